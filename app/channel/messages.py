@@ -26,7 +26,6 @@ from onpath.app.channel.sheet_messages import (
     RobotSheet,
     Told,
 )
-from onpath.app.viser_adapter.data_channel import Hello
 from onpath.app.viser_adapter.file_uploads import LONGEST_NAME
 from onpath.lessons.checks import Verdict
 
@@ -34,6 +33,45 @@ JointSymbol = Literal["q_1", "q_2", "delta", "rho"]
 """The symbols of lessons whose meaning depends on the kind of robot."""
 
 # From the page
+
+Kept = Annotated[str, Meta(max_length=500)]
+"""What a browser has kept; empty if nothing."""
+
+
+class Hello(
+    Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, tag_field="is", tag="hello"
+):
+    """The first message of a page.
+
+    Attributes:
+        page: a random number of its own, by which viser's websocket is known to be the same page's.
+        labs: the codes of the browser's labs, newest first, separated by commas.
+        teacher: the pass of a teacher of the class at the page's address.
+        site: where the browser has opened the site.
+        dark: whether the browser asks for dark pages.
+        plain: whether it draws in software, so that the scene must be quickly drawn.
+        speaks, sounds, first_minute: see `Store`.
+    """
+
+    page: Annotated[str, Meta(pattern="^[0-9a-f]{32,64}$")]
+    labs: Kept = ""
+    teacher: Kept = ""
+    site: Kept = ""
+    dark: bool = False
+    plain: bool = False
+    speaks: Kept = ""
+    sounds: Kept = ""
+    first_minute: Kept = ""
+
+
+class Seen(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="seen"):
+    """The page is drawn: comes every two seconds. A lab that nobody sees rests."""
+
+
+class Dark(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="dark"):
+    """The browser now asks for dark pages, or for light ones."""
+
+    on: bool
 
 
 class Resized(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="resized"):
@@ -131,7 +169,18 @@ class MakeFile(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", 
 
 
 PageMessage = (
-    Hello | Resized | Skip | Light | Plot | SendFile | SendPart | DropFile | MakeFile | Request
+    Hello
+    | Seen
+    | Dark
+    | Resized
+    | Skip
+    | Light
+    | Plot
+    | SendFile
+    | SendPart
+    | DropFile
+    | MakeFile
+    | Request
 )
 """What a page sends besides commands; `Hello` comes first, and only once."""
 
@@ -140,6 +189,41 @@ PageMessage = (
 
 SentCommand = Annotated[Mapping[str, Any], Meta(extra={"typescript": "Command"})]
 """A command that a button of the page sends."""
+
+
+class LabCode(Struct, frozen=True, tag_field="is", tag="lab"):
+    """The code of the page's lab, which its browser keeps before those of its other labs."""
+
+    code: str
+
+
+class Store(Struct, frozen=True, tag_field="is", tag="store"):
+    """The browser is to keep a value for `Hello`, or to forget it if it is empty.
+
+    Attributes:
+        key: "teacher": a pass, of the class at the page's address; "speaks" and "sounds": "yes" or
+            "no"; "first_minute": how many of the invitations it has shown.
+    """
+
+    key: Literal["teacher", "speaks", "sounds", "first_minute"]
+    value: str
+
+
+class Wait(Struct, frozen=True, tag_field="is", tag="wait"):
+    """The page has no lab yet: the server is full.
+
+    Attributes:
+        text: says so to the user.
+    """
+
+    text: str
+
+
+class WordsMessage(Struct, frozen=True, tag_field="is", tag="words"):
+    """The page's texts by key; when its language changes."""
+
+    language: str
+    words: dict[str, str]
 
 
 class FrameMessage(Struct, tag_field="is", tag="frame", omit_defaults=True):
@@ -268,6 +352,7 @@ class StateMessage(Struct, frozen=True, kw_only=True, tag_field="is", tag="state
         rows: what can be plotted of these robots.
         laws: names of the robots' control laws; a typed one is its own name.
         shared: the share code that was made last; may be empty.
+        scene: number of viser's client for which the lab draws the robots; 0 without one.
     """
 
     v: int
@@ -300,6 +385,7 @@ class StateMessage(Struct, frozen=True, kw_only=True, tag_field="is", tag="state
     rows: Annotated[list[dict[str, Any]], Meta(extra={"typescript": "RowData[]"})]
     laws: list[str]
     shared: str
+    scene: int = 0
 
 
 class LessonMessage(Struct, frozen=True, kw_only=True, tag_field="is", tag="lesson"):
@@ -533,7 +619,11 @@ class Refused(Struct, frozen=True, tag_field="is", tag="refused"):
 
 
 LabMessage = (
-    FrameMessage
+    LabCode
+    | Store
+    | Wait
+    | WordsMessage
+    | FrameMessage
     | PathMessage
     | LitMessage
     | StateMessage

@@ -1,7 +1,7 @@
 """HTML from the templates in assets/templates: every value is escaped unless it is `Markup`.
 
 Colours are those of the palette; a dark page replaces some of them, see
-assets/page/dark_colours.css.
+assets/web/dark_colours.css.
 
 `Markup` is made only in `phrase`, `inlined`, `math_font`, `part_of_page` and `json_block` and, from
 a lesson's words, by `lessons.safe_html.safe`.

@@ -5,13 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
-import viser
-
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
-from onpath.app.viser_adapter.local_storage import ask_item
 
 KEPT_AS = "first_minute"
-"""Where a browser keeps how many of the invitations it has shown."""
+"""Under which name a browser keeps how many of the invitations it has shown."""
 PAUSE = 2.5
 """Simulated time between invitations, to see the consequence of the last one [s]."""
 READ = 6.0
@@ -37,18 +34,14 @@ class Invitation:
     explained: str = ""
 
 
+LAST = "lesson"
 INVITATIONS = (
     Invitation("hold", lambda shown: shown.held, {"do": "Hold"}),
     Invitation("let_go", lambda shown: not shown.held, {"do": "Hold"}),
     Invitation("pull", lambda shown: shown.grabbed is not None, explained="pulled"),
     Invitation("bend", lambda shown: shown.edit.name in ("edited", "drawn")),
-    Invitation("lesson", lambda shown: shown.key.in_lesson),
+    Invitation(LAST, lambda shown: shown.key.in_lesson),
 )
-
-
-def end_first_minute(client: viser.ClientHandle) -> None:
-    """Record in the browser that all invitations have been shown."""
-    client.local_storage.set_item(KEPT_AS, str(len(INVITATIONS)))
 
 
 class FirstMinute:
@@ -56,18 +49,22 @@ class FirstMinute:
 
     Args:
         lesson: name of the first lesson, to which the last invitation leads; may be empty.
+        kept: how many this browser has shown, as it has kept it. The value is not trusted.
+        keep: has the browser keep it.
 
     Attributes:
         shown: the present invitation, or None.
     """
 
-    def __init__(self, client: viser.ClientHandle, lesson: str) -> None:
-        self._client, self._lesson = client, lesson
+    def __init__(
+        self, lesson: str, kept: str = "", keep: Callable[[str], None] = lambda _: None
+    ) -> None:
+        self._lesson, self._keep = lesson, keep
         self.shown: Invitation | None = None
-        self._next = len(INVITATIONS)  # until the browser reports which it has shown
+        known = [str(count) for count in range(len(INVITATIONS) + 1)]
+        self._next = known.index(kept) if kept in known else 0
         self._since: float | None = None
         self._followed: float | None = None  # when the present one was followed last, [s]
-        ask_item(client, KEPT_AS, self._begin)
 
     @property
     def is_over(self) -> bool:
@@ -75,12 +72,16 @@ class FirstMinute:
         return self._next >= len(INVITATIONS)
 
     def end(self) -> None:
-        """Show no more invitations."""
+        """Show no more invitations, nor when this browser comes again."""
         self._next, self.shown = len(INVITATIONS), None
+        self._keep(str(self._next))
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the next invitation, or remove the one that has been followed."""
         if self.is_over:
+            return
+        if snapshot.key.in_lesson and INVITATIONS[self._next].name != LAST:
+            self.shown = None  # a lesson says itself what to do
             return
         if self._since is None or snapshot.time < self._since:  # the first, or after a reset
             self._since = snapshot.time - PAUSE * (self._next == 0)
@@ -92,17 +93,12 @@ class FirstMinute:
             followed is not None and not followed <= snapshot.time < followed + READ
         ):
             self._next, self._since, self._followed = self._next + 1, snapshot.time, None
-            self._client.local_storage.set_item(KEPT_AS, str(self._next))
+            self._keep(str(self._next))
             self.shown = None
         elif self.shown is None and snapshot.time >= self._since + PAUSE:
             self.shown = self._invitation()
 
-    def _begin(self, kept: str) -> None:
-        """Continue after the invitations that this browser has shown. Its value is not trusted."""
-        known = [str(count) for count in range(len(INVITATIONS) + 1)]
-        self._next = known.index(kept) if kept in known else 0
-
     def _invitation(self) -> Invitation:
         found = INVITATIONS[self._next]
-        leads = found.name == "lesson" and self._lesson
+        leads = found.name == LAST and self._lesson
         return replace(found, act={"do": "OpenLesson", "name": self._lesson}) if leads else found

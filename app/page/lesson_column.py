@@ -9,6 +9,7 @@ from onpath.app.page.lesson_message import lesson_message, measured
 from onpath.app.page.lesson_view import LessonView
 from onpath.lessons.course import Course
 from onpath.lessons.words import Words
+from onpath.models.systems.robots import Robot
 
 EVERY = 3  # snapshots between two messages while a demonstration draws its curves
 
@@ -25,19 +26,11 @@ class LessonColumn:
         measured: verdicts and curves, as JSON.
     """
 
-    def __init__(
-        self,
-        course: Course,
-        words: Words,
-        student: str,
-        submit: Submit,
-        first: PageSnapshot,
-    ) -> None:
+    def __init__(self, course: Course, words: Words, student: str, submit: Submit) -> None:
         self._course, self._words, self._student = course, words, student
-        self._submit, self._shown, self._robot = submit, -1, robot_of(first)
+        self._submit, self._shown, self._robot = submit, -1, ""
         self.message = self.measured = b""
         self._turn = 0
-        self.follow(first)
 
     @property
     def version(self) -> int:
@@ -47,12 +40,12 @@ class LessonColumn:
     def follow(self, snapshot: PageSnapshot) -> None:
         """Make the messages that have changed."""
         run = LessonView(self._course, self._words, snapshot.lesson, self._student)
-        if run.version != self._shown:
-            self._shown = run.version
-            self._submit(lambda: self._tell(run))
+        if run.version != self._shown or snapshot.key.robot != self._robot:
+            self._shown, self._robot = run.version, snapshot.key.robot
+            self._submit(lambda: self._tell(run, robot_of(snapshot)))
         self._turn += 1
         if run.lesson is not None and not (run.playing and self._turn % EVERY):
             self.measured = encoded(measured(run))
 
-    def _tell(self, run: LessonView) -> None:
-        self.message = encoded(lesson_message(run, self._robot))
+    def _tell(self, run: LessonView, robot: Robot) -> None:
+        self.message = encoded(lesson_message(run, robot))

@@ -27,10 +27,10 @@ class Narration:
 
     Args:
         preferences: the browser's `Preferences`.
-        captions: of the scene, which is updated with each snapshot first.
+        captions: of the robots, which are updated with each snapshot first.
+        first_minute: what invites newcomers, if anything; it is updated first, too.
 
     Attributes:
-        first_minute: what invites newcomers, if anything.
         said: for the latest snapshot.
     """
 
@@ -39,9 +39,10 @@ class Narration:
         words: Words,
         preferences: Mapping[str, bool],
         captions: Captions,
+        first_minute: FirstMinute | None = None,
     ) -> None:
         self._words, self._preferences, self._captions = words, preferences, captions
-        self.first_minute: FirstMinute | None = None
+        self._first_minute = first_minute
         self._asked, self._summaries, self._summary = False, 0, ""
         self._spoken, self._spoken_at = "", 0.0
         self.said = Said()
@@ -59,7 +60,7 @@ class Narration:
             self._summary = summary(snapshot, captions, self._words)
         stopped = bool(snapshot.stopped) and level == "error"
         shows_remedy = (stopped or level == "replay") and not _in_lesson(snapshot)
-        first_minute = self.first_minute
+        first_minute = self._first_minute
         invitation = None if first_minute is None else first_minute.shown
         self._captions.brief = first_minute is not None and not first_minute.is_over
         self.said = Said(

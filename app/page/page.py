@@ -2,37 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import viser
 
-from onpath.app.channel.messages import StateMessage
-from onpath.app.channel.sheet_messages import Request
 from onpath.app.common.palette import AZURE
 from onpath.app.common.templates import render
+from onpath.app.common.work_thread import WorkThread
 from onpath.app.exports.exporter import Exporter, ViserDelivery
 from onpath.app.exports.path_upload import PathReader
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
 from onpath.app.lab.snapshots.snapshot import Motion
 from onpath.app.page.build_queue import in_turn, one_at_a_time
-from onpath.app.page.first_minute import FirstMinute, end_first_minute
-from onpath.app.page.lesson_column import LessonColumn
 from onpath.app.page.lesson_menu import LessonMenu
-from onpath.app.page.narration import Narration
 from onpath.app.page.overlays import Overlays, Switches
 from onpath.app.page.page_context import PageContext
 from onpath.app.page.page_menus import PageMenus
-from onpath.app.page.page_requests import PageRequests, Tell
 from onpath.app.page.panel_factory import PanelFactory, Part
 from onpath.app.page.panels.class_panel import ClassPanel
 from onpath.app.page.panels.keys import Keys
 from onpath.app.page.panels.widgets import Post
-from onpath.app.page.preferences import Preferences
-from onpath.app.page.rebuild_thread import RebuildThread
-from onpath.app.page.state_message import state_message
 from onpath.app.page.step_controls import Build, StepControls
 from onpath.app.page.step_drawings import StepDrawings
-from onpath.app.page.strip_words import strip_words
 from onpath.app.scene.mouse import SceneCallbacks
 from onpath.app.scene.pointer_projection import plane_coordinates
 from onpath.app.scene.projection import Seen, seen_by, seen_from
@@ -66,8 +59,6 @@ class Page:
     Attributes:
         is_outdated: whether the page must be rebuilt, for which it needs a complete snapshot.
         exporter: creates the files requested on this page.
-        column: what the data channel tells of the lessons; None on a teacher's page.
-        has_script: whether the page's script listens to its data channel.
     """
 
     def __init__(
@@ -77,25 +68,15 @@ class Page:
         self._context = context
         self._channel = FrameChannel(client)
         self.exporter, self._files = Exporter(ViserDelivery(client)), PathReader()
-        self._rebuilds, self._keys = RebuildThread(client), Keys(client.gui)
+        self._rebuilds, self._keys = WorkThread("rebuild"), Keys(client.gui)
         self._framed, self._settling = 0.0, SETTLING
         self._switches, self._switched = Switches(), set[str]()
         self._building, self.is_outdated = True, False
-        self._preferences = Preferences(client)
-        self._requests = PageRequests(
-            context=context,
-            exporter=self.exporter,
-            preferences=self._preferences,
-            submit=self._rebuilds.submit,
-            reset_view=self.reset_view,
-            ask_summary=lambda: self._narration.ask_summary(),
-        )
-        client.gui.configure_theme(show_logo=False, show_share_button=False, brand_color=AZURE.rgb)
         client.gui.set_panel_label("OnPath")
         self._narrow: bool | None = None  # not laid out yet
         self._low = False
         self._folded = True  # perhaps by the page before, in the same browser
-        self._wants_folded = self.has_script = False
+        self._wants_folded = False
         self._step: StepControls | None = None
         self._wanted_narrow = self._is_narrow()
         with in_turn(), client.atomic():  # the browser gets no widget without its callbacks
@@ -114,7 +95,8 @@ class Page:
 
     def show(self, snapshot: PageSnapshot | Motion) -> None:
         """Show a snapshot. Called on the simulation thread while the page is ready."""
-        if self._key(snapshot) != self._built or self._wanted_narrow != self._narrow:
+        is_other = self._key(snapshot) != self._built or self._dark != self._context.look.dark
+        if is_other or self._wanted_narrow != self._narrow:
             self._renew(snapshot)
             return
         with self._channel:
@@ -132,19 +114,10 @@ class Page:
             for part in self._parts:
                 part.follow(snapshot)
 
-    def state(self, snapshot: PageSnapshot) -> StateMessage:
-        """What the data channel tells of the snapshot that is shown; see `state_message`."""
-        return state_message(
-            snapshot,
-            words=self._words_for(snapshot),
-            captions=self._scene.captions.shown,
-            said=self._narration.said,
-            seen=self._seen(snapshot),
-        )
-
-    def serve(self, request: Request, snapshot: PageSnapshot, tell: Tell) -> None:
-        """Serve a request of the page's script. Called on the simulation thread."""
-        self._requests.serve(request, snapshot, self._words_for(snapshot), tell)
+    @property
+    def client(self) -> viser.ClientHandle:
+        """Whose page it is."""
+        return self._client
 
     def settle(self) -> None:
         """Refit the camera now and for a while, because the canvas has changed its size."""
@@ -158,12 +131,7 @@ class Page:
         """Send the frame to the browser."""
         self._channel.send()
 
-    @property
-    def updates(self) -> int:
-        """Number of updates sent to the browser."""
-        return self._channel.frames
-
-    def _seen(self, snapshot: PageSnapshot) -> Seen:
+    def seen(self, snapshot: PageSnapshot) -> Seen:
         """How the picture shows the robots, or how it will as soon as its camera is in place."""
         camera = self._client.camera
         if self._stands and not self.is_outdated:
@@ -189,6 +157,18 @@ class Page:
             self._framed, self._settling = 0.0, SETTLING
             self._build(first)
 
+    def _change(self, work: Callable[[], None]) -> None:
+        """Change widgets in another thread; the browser receives the change as a whole.
+
+        Otherwise a user could press a widget before its callbacks are set, in vain.
+        """
+
+        def atomically() -> None:
+            with self._client.atomic():
+                work()
+
+        self._rebuilds.submit(atomically)
+
     def _key(self, snapshot: PageSnapshot | Motion) -> tuple[object, ...]:
         """Key of everything the page layout depends on; a change triggers a rebuild."""
         return (snapshot.key,)
@@ -207,11 +187,18 @@ class Page:
 
     def _build(self, first: PageSnapshot) -> None:
         post, words, robot = self._post_for(first), self._words_for(first), robot_of(first)
+        self._dark, text = self._context.look.dark, self._context.text
         self._built, self._step = self._key(first), None
         self._stands = False
+        self._client.gui.configure_theme(
+            show_logo=False,
+            show_share_button=False,
+            brand_color=AZURE.rgb,
+            dark_mode=self._dark,
+        )
         self._lay_out(first)
-        tones = DARK if self._context.dark else LIGHT
-        stage = stage_of(robot, tones, self._context.plain)
+        tones = DARK if self._dark else LIGHT
+        stage = stage_of(robot, tones, self._context.look.plain)
         self._robot = robot
         self._scene = Scene(self._client, stage, _hooks(post, robot), words, titled=False)
         self._scene.build(first)
@@ -226,49 +213,23 @@ class Page:
         )
         self._parts: list[Part] = []
         self._client.gui.add_html(
-            render(
-                "panel/page.html",
-                words=words,
-                ticket=self._context.ticket,
-                parts=strip_words(words),
-            )
+            render("panel/page.html", words=words, client=self._client.client_id)
         )
-        self._narration = Narration(words, self._preferences, self._scene.captions)
         self._parts.append(
             StepDrawings(self._overlays, self._context.course, words, self._switched)
         )
-        self.column = self._column(first, words)
         self._build_panels(first, words, post)
         page_actions = {
             "view": self.reset_view,
-            "summary": self._narration.ask_summary,
+            "summary": lambda: text.narration.ask_summary(),
             "lesson": lambda: self._open_first_lesson(post),
         }
         self._keys.renew(words, post, page_actions)
-        self._parts.append(self._narration)  # the invitations come before it
         self._building = self.is_outdated = False
-
-    def _column(self, first: PageSnapshot, words: Words) -> LessonColumn | None:
-        """What the data channel tells of the lessons."""
-        column = LessonColumn(
-            course=self._context.course,
-            words=words,
-            student=self._context.code,
-            submit=self._rebuilds.submit,
-            first=first,
-        )
-        self._parts.append(column)
-        return column
-
-    def end_introduction(self) -> None:
-        """Show no more invitations, nor when this browser comes again."""
-        end_first_minute(self._client)
-        if self._narration.first_minute is not None:
-            self._narration.first_minute.end()
 
     def _open_first_lesson(self, post: Post) -> None:
         """Open the first lesson, to which the invitations of the first minute lead."""
-        self.end_introduction()
+        self._context.text.end_introduction()
         post(c.OpenLesson(next(iter(self._context.course.lessons), "")))
 
     def _build_panels(self, first: PageSnapshot, words: Words, post: Post) -> None:
@@ -302,7 +263,7 @@ class Page:
             words=words,
             course=self._context.course,
             build=build,
-            change=self._rebuilds.change,
+            change=self._change,
             first=first,
         )
 
@@ -312,9 +273,6 @@ class Page:
         """Build all panels; numbers, chart and the buttons for time are in the strip."""
         self._build_navigation(first, words, post)
         self._parts += controls.beside_strip(first)
-        lesson = next(iter(self._context.course.lessons), "")
-        self._narration.first_minute = FirstMinute(self._client, lesson)
-        self._parts.append(self._narration.first_minute)
 
     def _controls(self, words: Words, post: Post) -> PanelFactory:
         return PanelFactory(
@@ -342,7 +300,8 @@ class Page:
 
     def _build_menus(self, first: PageSnapshot, words: Words, post: Post) -> None:
         """Build the buttons for language, display and help."""
-        PageMenus(self._client.gui, words, post, first=first, preferences=self._preferences)
+        preferences = self._context.text.preferences
+        PageMenus(self._client.gui, words, post, first=first, preferences=preferences)
 
     def _lay_out(self, first: PageSnapshot) -> None:
         """Put the panel beside the scene unless the window is narrow: it is below it then."""
@@ -366,7 +325,7 @@ class Page:
         folds = self._wants_folded
         if (step := self._step) is not None:
             folds = folds or self._low or step.is_empty
-        stands = self.has_script and self._settling < SETTLING - STANDS
+        stands = self._settling < SETTLING - STANDS
         if folds != self._folded and stands:
             self._folded = folds
             panel = self._client.gui.main_panel

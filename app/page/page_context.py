@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
+from onpath.app.page.page_text import PageText
 from onpath.app.page.panels.widgets import Post
 from onpath.lessons.course import Course
 
@@ -27,6 +28,19 @@ class ClassSeat:
     code: str = ""
 
 
+@dataclass(slots=True)
+class Look:
+    """How a browser's scene is to be drawn.
+
+    Attributes:
+        dark: whether the browser asks for dark pages; this may change.
+        plain: whether it draws in software, so that the scene must be quickly drawn.
+    """
+
+    dark: bool = False
+    plain: bool = False
+
+
 @dataclass(frozen=True, slots=True)
 class PageContext:
     """The context of one client's page.
@@ -39,10 +53,9 @@ class PageContext:
             as long as the server.
         enter: opens the lab of a code; raises ValueError with a message.
         seat: the lab's place in the class, or None without a class.
-        dark: whether the browser asks for dark pages.
-        plain: whether the browser draws in software, so that the scene must be quickly drawn.
+        look: how the scene is to be drawn.
         privacy_url: the address of the site's privacy notice; empty if it has none.
-        ticket: opens the page's data channel; empty if it has none.
+        text: what our own part of the page says.
     """
 
     code: str
@@ -50,8 +63,7 @@ class PageContext:
     course: Course
     keep_days: int
     enter: Callable[[str], None]
+    text: PageText
     seat: ClassSeat | None = None
-    dark: bool = False
-    plain: bool = False
+    look: Look = field(default_factory=Look)
     privacy_url: str = ""
-    ticket: str = ""

@@ -19,9 +19,7 @@ from onpath.app.channel.sheet_messages import (
 from onpath.app.common.access_codes import shown
 from onpath.app.exports.exporter import Exporter
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
-from onpath.app.page.background import Submit
 from onpath.app.page.page_context import PageContext
-from onpath.app.page.preferences import Preferences
 from onpath.app.view.comparing import compare_sheet, compared
 from onpath.app.view.sheets import SheetContext, sheet_of
 from onpath.lessons.words import Words
@@ -35,46 +33,39 @@ class PageRequests:
     """Serves one page's requests. Call it in the simulation thread.
 
     Args:
-        submit: runs a function in another thread.
+        exporter: compares laws.
         reset_view: resets the camera.
-        ask_summary: announces a description of the screen.
     """
 
     def __init__(
         self,
         context: PageContext,
         exporter: Exporter,
-        preferences: Preferences,
-        submit: Submit,
         reset_view: Callable[[], None],
-        ask_summary: Callable[[], None],
     ) -> None:
-        self._context, self._exporter, self._preferences = context, exporter, preferences
-        self._submit, self._reset_view, self._ask_summary = submit, reset_view, ask_summary
+        self._context, self._exporter, self._text = context, exporter, context.text
+        self._reset_view = reset_view
         self._sheets = SheetContext(
             course=context.course,
             code=shown(context.code),
             days=context.keep_days,
-            preferences=preferences,
+            preferences=self._text.preferences,
         )
 
-    def serve(self, request: Request, snapshot: PageSnapshot, words: Words, tell: Tell) -> None:
-        """Serve a request; what takes long is answered later.
-
-        Args:
-            words: of the page.
-        """
+    def serve(self, request: Request, snapshot: PageSnapshot, tell: Tell) -> None:
+        """Serve a request; what takes long is answered later."""
+        text, words = self._text, self._text.words
         match request:
             case Ask(what=what):
-                self._submit(lambda: tell(sheet_of(what, snapshot, words, self._sheets)))
+                text.submit(lambda: tell(sheet_of(what, snapshot, words, self._sheets)))
             case Prefer(name=name, on=on):
-                self._preferences.set(name, on)
+                text.preferences.set(name, on)
             case ResetView():
                 self._reset_view()
             case AskSummary():
-                self._ask_summary()
+                text.narration.ask_summary()
             case EnterLab(code=code):
-                self._submit(lambda: self._enter(code, words, tell))
+                text.submit(lambda: self._enter(code, words, tell))
             case CompareLaws(laws=laws, obstruction=obstruction):
                 self._compare(laws, obstruction, snapshot, words, tell)
 

@@ -1,25 +1,29 @@
-"""A browser's preferences, which it stores itself: speech and sound."""
+"""A browser's preferences, which it keeps itself: speech and sound."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from functools import partial
-
-import viser
-
-from onpath.app.viser_adapter.local_storage import ask_item
+from collections.abc import Callable, Iterator, Mapping
 
 DEFAULTS = {"speaks": True, "sounds": False}
 """Whether a screen reader speaks about the robots, and whether the distances are heard as tones."""
 
 
 class Preferences(Mapping[str, bool]):
-    """The switches of one browser, by name; see `DEFAULTS`."""
+    """The switches of one browser, by name; see `DEFAULTS`.
 
-    def __init__(self, client: viser.ClientHandle) -> None:
-        self._client, self._values = client, dict(DEFAULTS)
-        for name in DEFAULTS:
-            ask_item(client, name, partial(self._heard, name))
+    Args:
+        kept: what the browser has kept, which is not trusted: an invalid value leaves the default.
+        keep: has the browser keep the value of a name.
+    """
+
+    def __init__(
+        self, kept: Mapping[str, str] = {}, keep: Callable[[str, str], None] = lambda *_: None
+    ) -> None:
+        self._keep = keep
+        known = {"yes": True, "no": False}
+        self._values = {
+            name: known.get(kept.get(name, ""), usual) for name, usual in DEFAULTS.items()
+        }
 
     def __getitem__(self, name: str) -> bool:
         return self._values[name]
@@ -31,10 +35,6 @@ class Preferences(Mapping[str, bool]):
         return len(self._values)
 
     def set(self, name: str, on: bool) -> None:
-        """Change a switch and store it in the browser."""
+        """Change a switch, and have the browser keep it."""
         self._values[name] = on
-        self._client.local_storage.set_item(name, "yes" if on else "no")
-
-    def _heard(self, name: str, kept: str) -> None:
-        """Take a browser's value, which is not trusted: an invalid one leaves the default."""
-        self._values[name] = {"yes": True, "no": False}.get(kept, DEFAULTS[name])
+        self._keep(name, "yes" if on else "no")

@@ -21,7 +21,7 @@ class StepControls:
     """A folder whose contents are rebuilt for every step.
 
     Args:
-        change: changes widgets in another thread; see `RebuildThread.change`.
+        change: changes widgets in another thread; see `Page`.
 
     Attributes:
         is_empty: whether the open step has no controls.

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import json
+from functools import cache
 
+from onpath.app.channel.messages import WordsMessage, encoded
 from onpath.app.exports.path_upload import MOST_BYTES
 from onpath.app.exports.standalone.figure_words import CHART
 from onpath.app.page.first_minute import INVITATIONS
@@ -38,11 +39,14 @@ _FILLED = {
 """Messages whose values the page fills in."""
 
 
-def strip_words(words: Words) -> str:
-    """Key -> text of every message, as JSON."""
+@cache
+def words_message(language: str) -> bytes:
+    """The message with the texts of a language: key -> text of every message."""
+    words = Words(language)
     messages = player_words(words) | {key: words(key) for key in _PLAIN}
     messages |= {
         key: words(key, **{name: f"{{{name}}}" for name in names}) for key, names in _FILLED.items()
     }
     messages["design.upload_hint"] = words("design.upload_hint", most=f"{MOST_BYTES / 1e6:g}")
-    return json.dumps(messages | {"point": words("report.point")}, ensure_ascii=False)
+    texts = messages | {"point": words("report.point")}
+    return encoded(WordsMessage(language, texts))

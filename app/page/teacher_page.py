@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import viser
-from msgspec.structs import replace
 from typing_extensions import override
 
-from onpath.app.channel.messages import StateMessage
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.snapshot import Motion
@@ -49,14 +47,6 @@ class TeacherPage(Page):
     @override
     def _post_for(self, snapshot: PageSnapshot) -> Post:
         return _ignore if snapshot.key.student else self._context.post
-
-    @override
-    def _column(self, first: PageSnapshot, words: Words) -> None:
-        return None
-
-    @override
-    def state(self, snapshot: PageSnapshot) -> StateMessage:
-        return replace(super().state(snapshot), presenting=self._presents)
 
     @override
     def _is_folded(self, snapshot: PageSnapshot) -> bool:

@@ -8,7 +8,7 @@ import numpy as np
 import viser
 from viser.transforms import SO3
 
-from onpath.app.scene.stage import FIELD_OF_VIEW, Pose, Stage
+from onpath.app.scene.stage import FIELD_OF_VIEW, FIRST_SIZE, Insets, Pose, Stage, view_of
 from onpath.models.systems.robots import Robot
 
 
@@ -29,6 +29,11 @@ class Seen:
     cameras: np.ndarray
     above: np.ndarray
     arrow: float
+
+
+def seen_at_first(stage: Stage, robot: Robot) -> Seen:
+    """How the robots of a stage are seen before a camera has reported; see `set_initial_camera`."""
+    return seen_from(view_of(stage, FIRST_SIZE, Insets()), stage, robot)
 
 
 def seen_by(camera: viser.CameraHandle, stage: Stage, robot: Robot) -> Seen:

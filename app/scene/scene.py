@@ -55,7 +55,6 @@ class Scene:
 
     Attributes:
         mouse: the mouse on end-points and control points.
-        captions: what each robot is doing, as shown above it.
     """
 
     def __init__(
@@ -86,7 +85,7 @@ class Scene:
         )
         self._start = StartNodes(client.scene, self._origins, pointer, hooks.on_start_moved)
         self._freehand: Freehand | None = None
-        self.captions = Captions(words)
+        self._captions = Captions(words)
         self._zone: PlaneNodes | None = None
 
     @property
@@ -138,9 +137,8 @@ class Scene:
 
     def update_traces(self, snapshot: Snapshot) -> None:
         """Redraw traces, titles, markers, force labels and a stroke; called at 5 to 10 Hz."""
-        captions = self.captions.follow(snapshot)
         if self._titles is not None:
-            self._titles.show(snapshot.laws, captions)
+            self._titles.show(snapshot.laws, self._captions.follow(snapshot))
         self._machine.update_laws(snapshot.laws)
         self._machine.update_traces([snapshot.robots[side] for side in self._sides])
         self._contacts.update(snapshot)

@@ -29,6 +29,8 @@ NARROW = 0.8
 DOWN = np.array([0.0, 1.0, 0.0, 0.0])
 """Orientation of a picture that lies on the ground, seen from above."""
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
+FIRST_SIZE = 1400.0, 800.0
+"""Of a canvas, until a browser has reported its own [px]."""
 HIGHER = 0.3
 """How much higher than the middle the robots are, as a share of half of the room that is left."""
 TEXT = 0.022
@@ -185,7 +187,7 @@ def view_of(stage: Stage, size: tuple[float, float], insets: Insets) -> Pose:
 
 def set_initial_camera(server: viser.ViserServer, stage: Stage) -> None:
     """Set the camera with which new clients open, before their canvas size is known."""
-    pose = view_of(stage, (1400, 800), Insets())
+    pose = view_of(stage, FIRST_SIZE, Insets())
     server.initial_camera.fov = FIELD_OF_VIEW
     server.initial_camera.position = pose.position
     server.initial_camera.look_at = pose.look_at

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-import viser
-
 from onpath.app.classroom.class_keeper import ClassKeeper
 from onpath.app.classroom.class_sync import ClassSync
 from onpath.app.classroom.classroom import Classroom
@@ -18,43 +16,40 @@ from onpath.app.page.teacher_context import TeacherChoices, TeacherContext
 from onpath.app.server.followed_lab import FollowedLab
 from onpath.app.server.lab_registry import LabRegistry
 from onpath.app.server.site_address import is_local
+from onpath.app.server.visit import Visit
 from onpath.app.simulation.scheduled_lab import ScheduledLab
 from onpath.app.storage.lab_state import keep
 from onpath.app.storage.records import HeldElsewhere, Records
 from onpath.app.storage.write_behind import WriteBehind
-from onpath.app.viser_adapter.addresses import class_address, storage_key
+from onpath.app.viser_adapter.addresses import class_address
 from onpath.lessons.course import Course
 from onpath.models.errors import CodedError
-
-TEACHER_KEY = "onpath_teacher"  # in the browser's storage
 
 
 class ClassService:
     """A class of one server process.
 
     Args:
-        prefix: of its page's address, see `app.viser_adapter.addresses`.
         course: the lessons, which may have changed since the class was stored.
         records: store the class, and students' data, which a teacher may delete.
         keeper: stores a student's lab on joining.
-        lost: called with the clients of the class when another process has taken it over.
+        visits: the numbers of the pages of the class.
+        lost: called with the pages of the class when another process has taken it over.
     """
 
     def __init__(
         self,
         classroom: Classroom,
         registry: LabRegistry,
-        prefix: str,
         course: Course,
         records: Records | None = None,
         keeper: WriteBehind | None = None,
+        visits: Callable[[], set[int]] = set,
         lost: Callable[[set[int]], None] = lambda _: None,
     ) -> None:
         self._class, self._registry, self._course = classroom, registry, course
-        self._records, self._keeper, self._lost = records, keeper, lost
-        self._clients = set[int]()
-        self._teachers: dict[int, tuple[str, TeacherChoices]] = {}
-        self._teacher_key = storage_key(TEACHER_KEY, prefix)
+        self._records, self._keeper = records, keeper
+        self._visits, self._lost = visits, lost
         self._attendance = ClassSync(classroom, self._student)
         self._attendance.rounds.start()
         self._class_keeper: ClassKeeper | None = None
@@ -75,14 +70,11 @@ class ClassService:
 
     @property
     def in_use(self) -> bool:
-        """Whether the class has clients here, so that it must not move to another process."""
-        return bool(self._clients)
+        """Whether the class has pages here, so that it must not move to another process."""
+        return bool(self._visits())
 
-    def greet(self, client: viser.ClientHandle, shown: str | None) -> bool:
-        """Receive a client; a teacher's browser becomes a teacher's again.
-
-        Args:
-            shown: the value that the browser has stored under `TEACHER_KEY`.
+    def greet(self, visit: Visit) -> bool:
+        """Receive a page; a teacher's browser becomes a teacher's again.
 
         Returns:
             Whether this process has the class; if not, another one has it open.
@@ -92,34 +84,29 @@ class ClassService:
         pace = self._class.orders.pace
         if pace is not None and not self._course.has_steps(pace.lesson, pace.first, pace.last):
             self._class.keep_within(None)
-        self._clients.add(client.client_id)
-        if shown is not None and self._class.is_pass(shown):
-            self._teachers[client.client_id] = (shown, TeacherChoices())
+        shown = visit.hello.teacher
+        if shown and self._class.is_pass(shown):
+            visit.teacher = shown, TeacherChoices()
         return True
-
-    def gone(self, client: int) -> None:
-        """Forget a client that has disconnected."""
-        self._clients.discard(client)
-        self._teachers.pop(client, None)
 
     def nickname(self, code: str) -> str:
         """Nickname of the student of a lab; empty until the student joins."""
         member = self._class.member(code)
         return member.name if member else ""
 
-    def seat(self, client: viser.ClientHandle, code: str, reopen: Callable[[], None]) -> ClassSeat:
+    def seat(self, visit: Visit, code: str, reopen: Callable[[], None]) -> ClassSeat:
         """A lab's place in the class.
 
         Args:
             code: code of the lab.
-            reopen: rebuilds the client's page.
+            reopen: shows the lab on the page anew.
         """
 
         def teach(key: str) -> str:
             shown = self._class.admit(key, code)
             self._class.leave(code)
-            self._teachers[client.client_id] = (shown, TeacherChoices())
-            client.local_storage.set_item(self._teacher_key, shown)
+            visit.teacher = shown, TeacherChoices()
+            visit.keep("teacher", shown)
             reopen()
             return ""
 
@@ -138,30 +125,26 @@ class ClassService:
             code=self._class.code,
         )
 
-    def teaches(self, client: int) -> bool:
-        """Whether a client is a teacher."""
-        return client in self._teachers
-
-    def followed(self, client: int) -> FollowedLab | None:
-        """The lab that a teacher follows instead of their own; None for other clients."""
-        teacher = self._teachers.get(client)
-        if teacher is None:
-            return None
-        return FollowedLab(self._class, teacher[1], self._lab)
+    def followed(self, chosen: TeacherChoices) -> FollowedLab:
+        """The lab that a teacher follows instead of their own."""
+        return FollowedLab(self._class, chosen, self._lab)
 
     def teaching(
-        self, client: viser.ClientHandle, lab: Lab, reopen: Callable[[], None], site: str
-    ) -> TeacherContext | None:
-        """The teacher's page; None for other clients.
+        self,
+        visit: Visit,
+        teacher: tuple[str, TeacherChoices],
+        lab: Lab,
+        reopen: Callable[[], None],
+        site: str,
+    ) -> TeacherContext:
+        """A teacher's page.
 
         Args:
+            teacher: of the visit.
             lab: the teacher's own lab, whose open lesson is closed.
-            reopen: rebuilds the client's page.
+            reopen: shows the lab on the page anew.
             site: address of the site for students.
         """
-        teacher, followed = self._teachers.get(client.client_id), self.followed(client.client_id)
-        if teacher is None or followed is None:
-            return None
         shown, chosen = teacher
         lab.post(CloseLesson())
 
@@ -170,8 +153,8 @@ class ClassService:
             lab.post(ReportState(lambda state: push(TakeSetup(capture(state.simulation)))))
 
         def stop() -> None:
-            self._teachers.pop(client.client_id, None)
-            client.local_storage.remove_item(self._teacher_key)
+            visit.teacher = None
+            visit.keep("teacher", "")
             reopen()
             self._class.revoke(shown)
 
@@ -182,7 +165,7 @@ class ClassService:
             is_local=is_local(site),
             progress=lambda: lab.lessons.progress,
             presents=lambda: lab.simulation.settings.presenting,
-            why_still=followed.why_still,
+            why_still=self.followed(chosen).why_still,
             send_setup=send_setup,
             delete=self._delete,
             forget=self._forget,
@@ -199,8 +182,8 @@ class ClassService:
         return None if entry is None else entry.scheduled
 
     def _give_up(self) -> None:
-        """Send all clients away when another process has the class; they reconnect to that one."""
-        self._lost(set(self._clients))
+        """Send all pages away when another process has the class; they reconnect to that one."""
+        self._lost(self._visits())
 
     def _delete(self, code: str) -> None:
         """Delete a student's lab with all stored data, and the student's seat.

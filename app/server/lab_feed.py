@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from operator import is_
 
+import viser
 from typing_extensions import override
 
 from onpath.app.lab.lab import Lab
@@ -17,29 +18,37 @@ from onpath.app.lab.snapshots.take_snapshot import take_motion, take_page_snapsh
 from onpath.app.page.page import Page
 from onpath.app.server.followed_lab import FollowedLab
 from onpath.app.server.page_data import EVERY, PageData
-from onpath.app.server.tab_visibility import CountingDisplay
 from onpath.app.simulation.display_rate import AT_EASE, is_turn
+from onpath.app.simulation.scheduled_lab import LabDisplay
 
 
-class LabFeed(CountingDisplay):
+class LabFeed(LabDisplay):
     """Shows a lab on a page.
 
     Args:
+        data: what our own part of the page is told.
+        make: builds viser's part of the page.
+        send: sends what has been handed over for all pages.
         offset: spreads the pages over the frames.
         nickname: returns the student's nickname in the class; empty if there is none.
         followed: the student's lab that a teacher's page shows instead, or None.
-        data: what the page is told through its data channel, if it has one.
+
+    Attributes:
+        page: viser's part of the page, as long as it is there.
+        make: builds it.
     """
 
     def __init__(
         self,
-        page: Page,
+        data: PageData,
+        make: Callable[[viser.ClientHandle, PageSnapshot], Page],
+        send: Callable[[], None],
         offset: int,
         nickname: Callable[[], str] = str,
         followed: FollowedLab | None = None,
-        data: PageData | None = None,
     ) -> None:
-        self.page, self._data = page, data
+        self.page: Page | None = None
+        self._data, self.make, self._send = data, make, send
         self._offset, self._nickname, self._followed = offset, nickname, followed
         self._lab: Lab | None = None
         self._shown: tuple[object, ...] = ()
@@ -47,9 +56,16 @@ class LabFeed(CountingDisplay):
         self._whole: PageSnapshot | None = None
 
     @property
+    def _ready(self) -> Page | None:
+        """Viser's part of the page, unless it is missing or being built."""
+        page = self.page  # another thread may remove it
+        return page if page is not None and page.is_ready else None
+
+    @property
     @override
     def is_outdated(self) -> bool:
-        return self.page.is_outdated and self.page.is_ready
+        page = self._ready
+        return page is not None and page.is_outdated
 
     @override
     def is_turn(self, lab: Lab, frame: int, stride: float) -> bool:
@@ -59,33 +75,34 @@ class LabFeed(CountingDisplay):
 
     @override
     def show(self, lab: Lab, frame: int, stride: float) -> None:
-        if self.page.is_ready and self.is_turn(lab, frame, stride):
+        if self.is_turn(lab, frame, stride):
             self._show_motion(lab)
-        if self._data is None:
-            return
         lab = self._source(lab, 1.0)[0]
         if self._last is not None:
             is_turn_of_data = is_turn(frame + self._offset, max(stride, EVERY))
-            self._data.follow(lab, self._last, is_turn_of_data, self.page.settle)
+            self._data.follow(lab, self._last, is_turn_of_data, self._settle)
 
     def _show_motion(self, lab: Lab) -> None:
         lab, _, student = self._source(lab, 1.0)
         if self._has_news(lab):
             self._last = motion = take_motion(lab, self._last, student)
-            self.page.show(motion)
+            if (page := self._ready) is not None:
+                page.show(motion)
+
+    def _settle(self) -> None:
+        if (page := self._ready) is not None:
+            page.settle()
 
     @override
     def refresh(self, lab: Lab, achieved: float) -> None:
         lab, achieved, student = self._source(lab, achieved)
-        if not self.page.is_ready:
-            return
         self._has_news(lab)  # remembers what is shown now
         snapshot = take_page_snapshot(lab, achieved, self._whole, student, self._nickname())
         self._last = self._whole = snapshot
-        self.page.show(snapshot)
-        self.page.exporter.serve(lab)
-        if self._data is not None:
-            self._data.tell(snapshot, self.page)
+        if (page := self._ready) is not None:
+            page.show(snapshot)
+            page.exporter.serve(lab)
+        self._data.tell(snapshot, self.page, lab.simulation.robot)
 
     def _source(self, lab: Lab, achieved: float) -> tuple[Lab, float, int]:
         """The displayed lab, its achieved speed, and its student's number; see `PageKey`."""
@@ -111,17 +128,31 @@ class LabFeed(CountingDisplay):
 
     @override
     def send(self) -> None:
-        self.page.send()
-        if self._data is not None:
-            self._data.send()
+        page = self.page
+        if page is not None:
+            page.send()
+        self._send()
+
+    def first(self) -> PageSnapshot:
+        """The lab as a page is to show it first."""
+        return take_page_snapshot(self._data.own, 1.0, nickname=self._nickname())
+
+    def furnish(self, page: Page) -> None:
+        """Show the lab in viser's part of the page, too. Not in the simulation thread."""
+        before, self.page = self.page, page
+        if before is not None:
+            before.close()
+
+    def unfurnish(self, client: viser.ClientHandle) -> None:
+        """Go on without viser's part of the page, if it is still this client's."""
+        page = self.page
+        if page is not None and page.client is client:
+            self.page = None
+            page.close()
 
     def close(self) -> None:
-        """Release the page's resources, and end its data channel. Thread-safe."""
-        if self._data is not None:
-            self._data.close()
-        self.page.close()
-
-    @property
-    @override
-    def updates(self) -> int:
-        return self.page.updates
+        """Release the page's resources. Thread-safe."""
+        self._data.close()
+        page, self.page = self.page, None
+        if page is not None:
+            page.close()

@@ -29,7 +29,6 @@ from onpath.models.errors import CodedError, Message
 log = logging.getLogger(__name__)
 
 CODE = re.compile(r"[a-z0-9]{12}")
-MOST_CODES = 8
 KEPT = 15 * 60.0  # [s] for which an abandoned lab is kept, if it was used
 HISTORY_KEPT = 30.0  # [s] for which its history is kept, which takes most of its memory
 MOST_ABANDONED = 60
@@ -84,7 +83,7 @@ class LabRegistry:
         """The lab of a new client.
 
         Args:
-            known: the list of codes stored in the browser, as returned by `remembered`.
+            known: the list of codes that the browser keeps, newest first, separated by commas.
             language: of a lab that has to be made; empty for the default.
         """
         codes = CODE.findall(known[:200]) if known else []
@@ -229,15 +228,22 @@ class LabRegistry:
         return self._entries.get(code)
 
     def leave(self, client: int) -> RegisteredLab | None:
-        """Pause a client's lab when it disconnects; it may return, here or elsewhere."""
+        """Pause a client's lab when it disconnects; it may return here at once."""
         with self._lock:
             entry = self._abandon(client)
             if entry is not None:
                 self._drop_old()
-        if entry is not None and self.keeper is not None and self.keeper.flush(entry.code):
-            with suppress(NotKept):  # else its lease ends by itself
-                self.give_up(entry.code)  # it may return to another process
         return entry
+
+    def give_back(self, code: str) -> None:
+        """Let a lab that was left return to another process, unless it has returned here."""
+        if self.keeper is None:
+            return
+        with self._alone(code):
+            entry = self._entries.get(code)
+            if entry is not None and entry.client is None and self.keeper.flush(code):
+                with suppress(NotKept):  # else its lease ends by itself
+                    self.give_up(code)
 
     def held(self) -> list[str]:
         """The codes of the labs that have a client."""
@@ -305,11 +311,6 @@ class LabRegistry:
                 entry.scheduled.display = None
                 return entry
         return None
-
-    def remembered(self, code: str, known: str) -> str:
-        """The list of codes for the browser to keep, newest first."""
-        codes = [code, *CODE.findall(known[:200])]
-        return ",".join(list(dict.fromkeys(codes))[:MOST_CODES])
 
     def __len__(self) -> int:
         return len(self._entries)

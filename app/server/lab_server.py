@@ -12,8 +12,6 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-import viser
-
 from onpath.app.classroom.classroom import Classroom
 from onpath.app.common.access_codes import normalised
 from onpath.app.common.end_signals import END_SIGNALS
@@ -22,19 +20,18 @@ from onpath.app.common.periodic import Periodic
 from onpath.app.exports import exporter as exports
 from onpath.app.exports import path_upload
 from onpath.app.lab.loops.loop_cache import LoopCache
-from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.page.build_queue import BuildQueue, one_at_a_time
 from onpath.app.page.own_part import own_part
 from onpath.app.page.page import Page
 from onpath.app.page.page_context import PageContext
+from onpath.app.page.page_text import PageText
 from onpath.app.page.teacher_page import TeacherPage
 from onpath.app.scene.stage import set_initial_camera
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.server.admission_queue import AdmissionQueue
-from onpath.app.server.arrivals import Arrival, Arrivals
 from onpath.app.server.built_in_course import built_in_course
 from onpath.app.server.class_directory import ClassDirectory
-from onpath.app.server.class_service import TEACHER_KEY, ClassService
+from onpath.app.server.class_service import ClassService
 from onpath.app.server.heap import limit_heap
 from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_registry import LabRegistry, RegisteredLab
@@ -43,7 +40,8 @@ from onpath.app.server.page_data import PageData
 from onpath.app.server.robot_shapes import prepare_shapes
 from onpath.app.server.server_options import USUAL, ServerOptions
 from onpath.app.server.site_address import reachable_site, site_for_students
-from onpath.app.server.tab_visibility import TabVisibilities
+from onpath.app.server.visit import Visit
+from onpath.app.server.visits import Visits
 from onpath.app.server.warm_up import compile_loops, warm_up
 from onpath.app.server.watchdog import Watchdog, signs_of_life
 from onpath.app.simulation.metrics import metrics_json
@@ -52,27 +50,14 @@ from onpath.app.storage.expiry import Expiry
 from onpath.app.storage.lease_keeper import LeaseKeeper
 from onpath.app.storage.records import NotKept, Records
 from onpath.app.storage.write_behind import WriteBehind
-from onpath.app.viser_adapter.addresses import class_address, storage_key
-from onpath.app.viser_adapter.connections import disconnect, turn_away
-from onpath.app.viser_adapter.data_channel import DataChannel
-from onpath.app.viser_adapter.local_storage import ask_item
-from onpath.app.viser_adapter.page_release import clear_page, release_page
+from onpath.app.viser_adapter.addresses import class_address
+from onpath.app.viser_adapter.connections import turn_away
+from onpath.app.viser_adapter.page_release import clear_page
 from onpath.app.viser_adapter.secure_server import make_server
 from onpath.lessons.course import read_course
 from onpath.lessons.problems import LessonError
 
 log = logging.getLogger(__name__)
-SITE_KEY = "site"  # where the browser has opened the site; see assets/page/address.js
-DARK_KEY = "dark"  # whether the browser prefers dark pages; see assets/page/dark.js
-QUALITY_KEY = "quality"  # whether it draws in software; see assets/page/quality.js
-STORAGE_KEY = "onpath_sessions"
-ASKED = {  # see `Arrivals`
-    STORAGE_KEY: True,
-    TEACHER_KEY: True,
-    DARK_KEY: False,
-    QUALITY_KEY: False,
-    SITE_KEY: False,
-}
 LOOK = 0.5  # [s] between looks for a signal
 FREEING = 10.0  # [s] between looks for labs that were left
 
@@ -100,12 +85,12 @@ class LabServer:
         self._course = lessons = options.course or built_in_course()
         self.thread = SimulationThread()
         self._watchdog, self._leases = Watchdog(options.hang_seconds), None  # see `_start`
-        self._channel = DataChannel()
+        self.visits = Visits(self._came, self._furnish, leave=lambda it: self.registry.leave(it))
         self.server = make_server(
             host,
             port,
             label="OnPath",
-            channel=self._channel,
+            channel=self.visits.channel,
             scripts=own_part(),
             health=partial(metrics_json, self.thread),
             trouble=lambda: self._watchdog.trouble,
@@ -133,15 +118,9 @@ class LabServer:
         if records is not None:
             self._store_labs(records)
         self._classes = ClassDirectory(options.classrooms, self._class_service)
-        self._prefixes = dict[int, str]()
-        self._feeds = dict[int, LabFeed]()
-        self._seen = dict[int, str]()  # where clients have opened the site
-        self._looks = dict[int, tuple[bool, bool]]()  # whether clients ask for dark, plain pages
         self._newcomers = BuildQueue()
-        self._tabs = TabVisibilities(self.server)
         set_initial_camera(self.server, stage_of(robot.make(robot.parameters())))
-        self._arrivals = Arrivals(self.server, ASKED, self._connected)
-        self.server.on_client_disconnect(self._disconnected)
+        self.visits.attend(self.server)
         self._start()
 
     def _store_labs(self, records: Records) -> None:
@@ -190,8 +169,8 @@ class LabServer:
         self.thread.stop()
         self.registry.look()
         self._loop_cache.close()
-        for feed in list(self._feeds.values()):
-            feed.close()
+        for visit in self.visits:
+            visit.show_nothing()
         exports.process.stop()
         path_upload.process.stop()
         self.server.stop()
@@ -209,10 +188,10 @@ class LabServer:
         return ClassService(
             classroom,
             registry=self.registry,
-            prefix=prefix,
             course=self._course,
             records=self._options.records,
             keeper=self._keeper,
+            visits=partial(self.visits.under, prefix),
             lost=self._send_away,
         )
 
@@ -226,103 +205,113 @@ class LabServer:
         """The names in the database of all labs and classes that are open in this process."""
         return [*self.registry.held(), *self._classes.in_use()]
 
-    def _class_of(self, client: int) -> ClassService | None:
-        return self._classes.at(self._prefixes.get(client, ""))
-
-    def _connected(self, arrival: Arrival) -> None:
-        client, kept, number = arrival.client, arrival.kept, arrival.client.client_id
-        self._prefixes[number] = arrival.prefix
-        service = self._class_of(number)
-        if service is not None and not service.greet(client, kept[TEACHER_KEY]):
-            disconnect(self.server, {number})
-            self._disconnected(client)
+    def _came(self, visit: Visit) -> None:
+        """Give a page its lab, once there is a place."""
+        service = self._classes.at(visit.prefix)
+        if service is not None and not service.greet(visit):
+            self.visits.send_away({visit.number})
             return
-        self._seen[number] = kept[SITE_KEY]
-        self._looks[number] = kept[DARK_KEY] == "yes", kept[QUALITY_KEY] == "plain"
-        teaches = service is not None and service.teaches(number)
-        enter = partial(self._entered, client, kept[STORAGE_KEY], arrival.language)
-        self._room.admit(client, enter, arrival.address, always=teaches)
-        if number not in self.server.get_clients():
-            self._disconnected(client)
+        visit.at_end(partial(self._room.leave, visit.number))
+        self._room.admit(
+            visit.number,
+            enter=partial(self._enter_lab, visit),
+            wait=visit.wait,
+            address=visit.address,
+            always=visit.teacher is not None,
+        )
 
-    def _entered(self, client: viser.ClientHandle, known: str | None, language: str) -> None:
-        """Give a newly admitted client its lab, if it is still connected."""
-        if client.client_id in self.server.get_clients():
-            entry = self.registry.join(client.client_id, known, language)
-            self._newcomers.submit(partial(self._show, client, entry))
-
-    def _show(self, client: viser.ClientHandle, entry: RegisteredLab) -> None:
-        """Show a lab to a client, if both still exist."""
-        if client.client_id not in self.server.get_clients():
-            self._disconnected(client)
+    def _enter_lab(self, visit: Visit) -> None:
+        if visit.has_ended:
             return
-        if self.registry.find(entry.code) is not entry or entry.client != client.client_id:
-            return  # another process owns it now
         try:
-            self._remember(client, entry.code)
-            feed = self._feed(client, entry)
+            self._open(visit, self.registry.join(visit.number, visit.hello.labs, visit.language))
+        except Exception as error:
+            log_error(error)
+            self.visits.send_away({visit.number})
+
+    def _open(self, visit: Visit, entry: RegisteredLab) -> None:
+        """Show a page its lab, if both still exist."""
+        visit.at_end(partial(self._give_back, visit.number, entry.code))
+        if self.registry.find(entry.code) is not entry or entry.client != visit.number:
+            return  # the page has left, or another process owns it now
+        visit.show(entry.scheduled, self._feed(visit, entry))
+        self._furnish(visit)
+
+    def _furnish(self, visit: Visit) -> None:
+        """Build viser's part of a page, once both it and the lab are there."""
+        self._newcomers.submit(partial(self._build, visit))
+
+    def _build(self, visit: Visit) -> None:
+        """Build viser's part of a page, unless it is there, or something is missing."""
+        client, feed = visit.client, visit.feed
+        if client is None or feed is None or (feed.page is not None and feed.page.client is client):
+            return
+        try:
+            page = feed.make(client, self.thread.call(feed.first))
         except Exception as error:
             log_error(error)
             turn_away(self.server, client.client_id, "a page that could not be built")
             return
-        self._feeds[client.client_id] = feed
-        self._tabs.watch(client, entry.scheduled, feed)
-        if client.client_id not in self.server.get_clients():
-            self._disconnected(client)
+        feed.furnish(page)
+        if visit.client is not client or visit.feed is not feed:
+            feed.unfurnish(client)
 
-    def _remember(self, client: viser.ClientHandle, code: str) -> None:
-        """Let a browser keep a code before those of its other labs."""
-        key = storage_key(STORAGE_KEY, self._prefixes.get(client.client_id, ""))
-
-        def keep(kept: str) -> None:
-            client.local_storage.set_item(key, self.registry.remembered(code, kept))
-
-        ask_item(client, key, keep)
-
-    def _feed(self, client: viser.ClientHandle, entry: RegisteredLab) -> LabFeed:
-        """Build the page of a lab, or of a teacher, and return its feed."""
-        number, code = client.client_id, entry.code
-        service, lab = self._class_of(number), entry.scheduled.lab
-        reopen = partial(self._reopen, client, entry)
-        prefix = self._prefixes.get(number, "")
+    def _feed(self, visit: Visit, entry: RegisteredLab) -> LabFeed:
+        """What shows a lab, or a teacher's page, to a visit."""
+        code, lab = entry.code, entry.scheduled.lab
+        service, teacher = self._classes.at(visit.prefix), visit.teacher
+        reopen = partial(self._reopen, visit, entry)
         seat = (
-            service.seat(client, code, reopen)
+            service.seat(visit, code, reopen)
             if service
-            else self._classes.seat_elsewhere(prefix, code)
+            else self._classes.seat_elsewhere(visit.prefix, code)
         )
-        site = site_for_students(self._seen.get(number, ""), self.site)
-        teaching = service.teaching(client, lab, reopen, site) if service else None
-        keeps = self._options.records is not None and not self._options.records.warning
-        data = PageData(self._channel, lab, code if keeps else "")
-        dark, plain = self._looks.get(number, (False, False))
+        site = site_for_students(visit.hello.site, self.site)
+        teaching = followed = None
+        if service is not None and teacher is not None:
+            teaching = service.teaching(visit, teacher, lab, reopen, site)
+            followed = service.followed(teacher[1])
+        records = self._options.records
+        keeps = records is not None and not records.warning
+        text = PageText(
+            self._course,
+            code,
+            kept=visit.kept,
+            keep=visit.keep,
+            teaching=teaching,
+        )
         context = PageContext(
             code=code,
             post=lab.post,
             course=self._course,
             keep_days=self._options.retention.days if keeps else 0,
-            enter=partial(self._enter, client),
+            enter=partial(self._enter, visit),
+            text=text,
             seat=seat,
-            dark=dark,
-            plain=plain,
+            look=visit.look,
             privacy_url=self._options.privacy_url,
-            ticket=data.ticket,
         )
-        nickname = partial(service.nickname, code) if service else str
-        take = partial(take_page_snapshot, lab, 1.0, nickname=nickname())
-        first = self.thread.call(take)
-        if teaching is None:
-            return LabFeed(Page(client, first, context), number, nickname, data=data)
-        followed = service.followed(number) if service else None
-        page = TeacherPage(client, first, context, teaching)
-        return LabFeed(page, number, nickname, followed, data)
+        make = Page if teaching is None else partial(TeacherPage, teaching=teaching)
+        return LabFeed(
+            PageData(visit.stream, lab, context, visit.sight),
+            make=partial(make, context=context),
+            send=self.visits.channel.send,
+            offset=visit.number,
+            nickname=partial(service.nickname, code) if service else str,
+            followed=followed,
+        )
 
-    def _enter(self, client: viser.ClientHandle, text: str) -> None:
-        """Move a client to the lab of a typed code.
+    def _enter(self, visit: Visit, text: str) -> None:
+        """Move a page to the lab of a typed code.
 
         Raises:
             ValueError: invalid code, no such lab, or the lab is in use.
         """
-        self._reopen(client, self.registry.enter(client.client_id, normalised(text)))
+        self._reopen(visit, self.registry.enter(visit.number, normalised(text)))
+
+    def _give_back(self, number: int, code: str) -> None:
+        self.registry.leave(number)
+        self.registry.give_back(code)
 
     def _lost(self, code: str) -> None:
         """Send away the client of a lab that another process has."""
@@ -331,40 +320,26 @@ class LabServer:
                 return  # it has come back meanwhile
         number = self.registry.lose(code)
         if number is not None:
-            disconnect(self.server, {number})
+            self.visits.send_away({number})
 
-    def _send_away(self, clients: set[int]) -> None:
-        """Store all labs, and close the connections of clients; their pages reconnect at once."""
+    def _send_away(self, visits: set[int]) -> None:
+        """Store all labs, and close the connections of pages, which reconnect at once."""
         if self._keeper is not None:
             for code in self.registry.held():
                 if not self._keeper.flush(code):
                     break  # each of the others would wait just as long, in vain
-        disconnect(self.server, clients)
+        self.visits.send_away(visits)
 
-    def _reopen(self, client: viser.ClientHandle, entry: RegisteredLab) -> None:
-        """Rebuild a client's page for a lab that it already has."""
-        self._tabs.leave(client.client_id)
-        self.thread.call(lambda: None)  # until the frame that still showed the page has ended
-        feed = self._feeds.pop(client.client_id, None)
-        if feed is not None:
-            feed.close()
-        with one_at_a_time:  # part of the page may be under construction
-            clear_page(client)
-        self._show(client, entry)
-
-    def _disconnected(self, client: viser.ClientHandle) -> None:
-        self._tabs.forget(client.client_id)
-        self._seen.pop(client.client_id, None)
-        self._looks.pop(client.client_id, None)
-        self.registry.leave(client.client_id)
-        if (service := self._class_of(client.client_id)) is not None:
-            service.gone(client.client_id)
-        self._prefixes.pop(client.client_id, None)
-        feed = self._feeds.pop(client.client_id, None)
-        if feed is not None:
-            feed.close()
-        release_page(client)
-        self._room.leave(client.client_id)
+    def _reopen(self, visit: Visit, entry: RegisteredLab) -> None:
+        """Show a page another lab, or its own anew."""
+        visit.sight.leave()
+        self.thread.call(lambda: None)  # until the frame that still showed it has ended
+        visit.show_nothing()
+        client = visit.client
+        if client is not None:
+            with one_at_a_time:  # viser's part may be under construction
+                clear_page(client)
+        self._open(visit, entry)
 
 
 def serve(

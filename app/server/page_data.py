@@ -1,4 +1,4 @@
-"""Feeds a page's data channel: frames while something changes, and the commands that come back."""
+"""Tells a page of its lab through its own websocket, and takes the commands that come back."""
 
 from __future__ import annotations
 
@@ -14,14 +14,17 @@ from msgspec import Struct
 from onpath.app.channel.data_frame import LENGTH, FrameSource, frame_message, path_message
 from onpath.app.channel.messages import (
     Alive,
+    Dark,
     DropFile,
     Hello,
+    LabCode,
     Light,
     LitMessage,
     MakeFile,
     Plot,
     Refused,
     Resized,
+    Seen,
     SendFile,
     SendPart,
     Skip,
@@ -36,9 +39,16 @@ from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.snapshot import Motion, PathSnapshot
 from onpath.app.page.page import Page
+from onpath.app.page.page_context import PageContext
+from onpath.app.page.page_requests import PageRequests
+from onpath.app.page.strip_words import words_message
+from onpath.app.scene.projection import Seen as View
+from onpath.app.scene.projection import seen_at_first
+from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.scene.symbol_geometry import has_meaning, symbol_lines
 from onpath.app.server.page_files import PageFiles
-from onpath.app.viser_adapter.data_channel import DataChannel, Message
+from onpath.app.server.tab_visibility import TabVisibility
+from onpath.app.viser_adapter.data_channel import Message, PageStream
 from onpath.models.systems.robots import Robot
 
 EVERY = 3.0  # frames of simulation per frame of data: 20 Hz
@@ -47,23 +57,35 @@ BEAT = 1.0  # [s]; a page to which nothing else is told for so long is told that
 
 
 class PageData:
-    """The data channel of one page.
+    """What one page is told of the lab that it has.
 
     Call everything but `close` in the simulation thread.
 
     Args:
+        stream: to the page.
         own: the lab of the page, which gets its commands.
-        code: of the lab, for the record of lessons; empty for none.
+        context: of the page.
+        sight: learns that the page is drawn.
     """
 
-    def __init__(self, channel: DataChannel, own: Lab, code: str) -> None:
-        self._channel, self._own, self._is_own = channel, own, True
-        self._stream = channel.open(self._receive)
+    def __init__(
+        self, stream: PageStream, own: Lab, context: PageContext, sight: TabVisibility
+    ) -> None:
+        self._stream, self.own, self._is_own = stream, own, True
+        self._context, self._text, self._sight = context, context.text, sight
         self._source, self._opened = FrameSource(), 0
         self._path: PathSnapshot | None = None
-        self._robot: object = None
+        self._robot: Robot | None = None
+        self._view: tuple[Robot, View] | None = None  # the robots, with a scene or without
+        self._language = ""
         self._state: StateMessage | None = None
-        self._files = PageFiles(own.post, code)
+        self._files = PageFiles(own.post, context.code if context.keep_days else "")
+        self._page: Page | None = None
+        self._server = PageRequests(
+            context=context,
+            exporter=self._files.exporter,
+            reset_view=self._reset_view,
+        )
         self._is_resized = self._skips = False
         self._requests, self._answers = deque[Request](), deque[Struct](maxlen=MOST_REQUESTS)
         self._lesson = self._measured = b""
@@ -71,16 +93,12 @@ class PageData:
         self._plotted: tuple[str, ...] = ()  # fields that are asked for
         self._lit: tuple[str, bytes] = "", b""  # the last one told, and the robots at that time
         self._told = 0.0  # when anything was told last, [s]
-
-    @property
-    def ticket(self) -> str:
-        """What the page's script must show."""
-        return self._stream.ticket
+        stream.receive = self._receive
 
     def close(self) -> None:
-        """End the ticket. Thread-safe."""
-        self._stream.close()
+        """Start no further work. Thread-safe."""
         self._files.close()
+        self._text.close()
 
     def follow(
         self,
@@ -95,14 +113,14 @@ class PageData:
             drawn: how the robots are drawn now.
             on_resize: called if the page has reported that its canvas has changed size.
         """
-        stream, self._is_own = self._stream, lab is self._own
+        stream, self._is_own = self._stream, lab is self.own
         if not stream.is_open:
             return
         if stream.opened != self._opened:
             self._opened = stream.opened
             self._files.restart()
             self._source.forget()
-            self._path = self._state = None
+            self._path, self._state, self._language = None, None, ""
             self._lesson = self._measured = b""
             self._symbol, self._lit = "", ("", b"")
             self._plotted = ()
@@ -130,32 +148,63 @@ class PageData:
             self._told = time.monotonic()
             stream.hand_over(*messages)
 
-    def tell(self, snapshot: PageSnapshot, page: Page) -> None:
-        """Hand over what has changed of the state and of what the lessons show."""
+    def tell(self, snapshot: PageSnapshot, page: Page | None, robot: Robot) -> None:
+        """Hand over what has changed of the texts, of the state and of what the lessons show.
+
+        Args:
+            page: viser's part, if it is there.
+            robot: of the lab.
+        """
+        text, self._page = self._text, page
+        text.follow(snapshot)
         if self._skips:
             self._skips = False
-            page.end_introduction()
+            text.end_introduction()
         while self._requests:
-            page.serve(self._requests.popleft(), snapshot, self._answer)
-        if not self._stream.is_open or self._stream.is_busy:
+            self._server.serve(self._requests.popleft(), snapshot, self._answer)
+        if self._stream.opened != self._opened or self._stream.is_busy:
             return
-        page.has_script = True
+        if not self._stream.is_open:
+            return
         messages = list[Message]()
-        state = page.state(snapshot)
+        if text.words.language != self._language:
+            if not self._language:
+                messages.append(_text_of(LabCode, self._context.code))
+            self._language = text.words.language
+            messages.append(partial(words_message, self._language))
+        scene = 0 if page is None else page.client.client_id
+        state = text.state(snapshot, self._seen_on(snapshot, page, robot), scene)
         if news := changes(state, self._state):
             self._state = state
             messages.append(partial(encoded_changes, StateMessage, news))
-        if (column := page.column) is not None and column.message:
+        messages += self._of_lesson()
+        while self._answers:
+            messages.append(partial(encoded, self._answers.popleft()))
+        if messages:
+            self._stream.hand_over(*messages)
+
+    def _of_lesson(self) -> list[Message]:
+        column, messages = self._text.column, list[Message]()
+        if column is not None and column.message:
             if column.message is not self._lesson:
                 self._lesson, self._measured = column.message, b""
                 messages.append(partial(bytes, column.message))
             if column.measured != self._measured:
                 self._measured = column.measured
                 messages.append(partial(bytes, column.measured))
-        while self._answers:
-            messages.append(partial(encoded, self._answers.popleft()))
-        if messages:
-            self._stream.hand_over(*messages)
+        return messages
+
+    def _seen_on(self, snapshot: PageSnapshot, page: Page | None, robot: Robot) -> View:
+        """How the picture shows the robots, or would, if there is none."""
+        if page is not None:
+            self._view = robot, page.seen(snapshot)
+        elif self._view is None or self._view[0] is not robot:
+            self._view = robot, seen_at_first(stage_of(robot), robot)
+        return self._view[1]
+
+    def _reset_view(self) -> None:
+        if (page := self._page) is not None:
+            page.reset_view()
 
     def _answer(self, answer: Struct) -> None:
         """Send an answer with the next messages. Thread-safe."""
@@ -172,10 +221,6 @@ class PageData:
         self._lit = now
         return [_text_of(_lit_message, self._symbol, robot, motion)]
 
-    def send(self) -> None:
-        """Send what has been handed over for all pages."""
-        self._channel.send()
-
     def _receive(self, text: str) -> bytes:
         """Post the command in a message; returns why not, if it is refused. On the event loop."""
         try:
@@ -184,29 +229,38 @@ class PageData:
             return encoded(Refused(str(error)))
         match message:
             case Command() if self._is_own:
-                self._own.post(message)
+                self.own.post(message)
             case Command():
                 return encoded(Refused("this lab is only shown"))
-            case Resized():
-                self._is_resized = True
-            case Skip():
-                self._skips = True
             case SendFile() if not self._is_own:
                 return encoded(Refused("this lab is only shown"))
             case SendFile() | SendPart() | DropFile() | MakeFile():
                 answer = self._files.hear(message)
                 return b"" if answer is None else encoded(answer)
-            case Light(symbol=symbol):
-                self._symbol = symbol
-            case Plot(fields=fields):
-                self._plotted = fields
             case Hello():
                 return encoded(Refused("the channel is open"))
+            case Seen() | Dark() | Resized() | Skip() | Light() | Plot():
+                self._note(message)
             case _ if len(self._requests) < MOST_REQUESTS:
                 self._requests.append(message)
             case _:
                 return encoded(Refused("too many requests at once"))
         return b""
+
+    def _note(self, message: Seen | Dark | Resized | Skip | Light | Plot) -> None:
+        match message:
+            case Seen():
+                self._sight.hear()
+            case Dark(on=on):
+                self._context.look.dark = on
+            case Resized():
+                self._is_resized = True
+            case Skip():
+                self._skips = True
+            case Light(symbol=symbol):
+                self._symbol = symbol
+            case Plot(fields=fields):
+                self._plotted = fields
 
 
 def _lit_message(symbol: str, robot: Robot, motion: Motion) -> LitMessage:

@@ -112,7 +112,7 @@ class PageFiles:
     def __init__(self, post: Callable[[Command], object], code: str = "") -> None:
         self._post, self._code = post, code
         self.delivery = ChannelDelivery()
-        self._exporter = Exporter(self.delivery)
+        self.exporter = Exporter(self.delivery)
         self._inbox, self._reader = FileInbox(MOST_BYTES), PathReader()
         self._wanted = deque[MakeFile]()
         self._arrived = deque[tuple[SendFile, bytes]]()
@@ -159,7 +159,7 @@ class PageFiles:
     def serve(self, lab: Lab) -> None:
         """Begin with what the page has asked for. In the simulation thread."""
         self._language = lab.words.language
-        exporter = self._exporter
+        exporter = self.exporter
         while self._wanted:
             wanted = self._wanted.popleft()
             if wanted.file == "report":
@@ -207,7 +207,7 @@ class PageFiles:
 
     def close(self) -> None:
         """Make no further files. Thread-safe."""
-        self._exporter.close()
+        self.exporter.close()
 
 
 def _placing(use: PathFile) -> Placing:

@@ -1,4 +1,4 @@
-"""Places a browser's camera, whatever pose the browser last reported, and asks for its pose."""
+"""Places a browser's camera, whatever pose the browser last reported."""
 
 from __future__ import annotations
 
@@ -30,12 +30,6 @@ def place_camera(
         _messages.SetCameraLookAtMessage(_vector(look_at)),
     ):
         client._websock_connection.queue_message(message)
-
-
-def ask_for_camera(client: viser.ClientHandle) -> None:
-    """Send a browser its own "up" direction; when it next draws, it answers with its camera."""
-    up = _vector(client.camera.up_direction)
-    client._websock_connection.queue_message(_messages.SetCameraUpDirectionMessage(up))
 
 
 def _vector(values: Array) -> tuple[float, float, float]:

@@ -1,19 +1,16 @@
-"""The second websocket of a page: data for our own part of it, and commands; see README.md.
+"""The websocket of our own part of a page: data for it, and commands; see README.md.
 
-It is opened at the same address as viser's and passes the same checks. Its subprotocol tells them
-apart. A page that viser's checks have let in is given a ticket through viser's websocket, which its
-script sends first; without it, nothing is sent or read. A ticket ends with its page.
+A page opens it at its own address, before viser's, and it passes the same checks. Its subprotocol
+tells the two apart. The first message greets the server, which then decides what the page is told.
 """
 
 from __future__ import annotations
 
 import asyncio
-import secrets
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from weakref import WeakValueDictionary
+from functools import partial
 
-import msgspec
 from websockets.exceptions import ConnectionClosed
 from websockets.frames import CloseCode
 from websockets.protocol import State
@@ -24,9 +21,8 @@ from onpath.app.viser_adapter.secure_connection import SecureConnection
 VERSION = 2
 FAMILY = "onpath-"
 SUBPROTOCOL = f"{FAMILY}{VERSION}"
-GREETING = 90.0  # [s] within which the ticket must come; a page may be slow, and so may be its way
-NO_TICKET = 4001  # closes a connection whose ticket is not valid: the page needs another one
-TICKET = 24  # random bytes of a ticket
+GREETING = 90.0  # [s] within which the greeting must come; a page and its way may be slow
+NO_GREETING = 4001  # closes a connection whose first message is no valid greeting
 MOST_UNSENT = 1 << 16  # [B] unsent, beyond which a page gets no further data
 AGAIN = 0.05  # [s] until a page that reads slowly is tried again
 
@@ -34,44 +30,30 @@ Message = Callable[[], bytes]
 """Makes a message; called on the network thread."""
 
 
-class Hello(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="hello"):
-    """The first message of a page.
-
-    Attributes:
-        ticket: that the page was given.
-    """
-
-    ticket: str
-
-
-def ticket_in(message: object) -> str:
-    """The ticket in a page's first message; empty if it has none."""
-    try:
-        return msgspec.json.decode(message, type=Hello).ticket if isinstance(message, str) else ""
-    except (ValueError, RecursionError):
-        return ""
-
-
 class PageStream:
-    """The data channel of one page, whether or not a script has opened it.
+    """What one page is told, whether or not it is connected.
+
+    Args:
+        left: called on the event loop when the page's connection has ended, and no other has come.
 
     Attributes:
-        ticket: opens it.
+        receive: called on the event loop with each message of the page; returns the answer, or
+            nothing.
         opened: how often it has been opened; each time, a page knows nothing yet.
         is_busy: whether the last messages have not been sent, because the page reads slowly. Then
             no others may be handed over.
     """
 
-    def __init__(self, channel: DataChannel, receive: Callable[[str], bytes]) -> None:
-        self._channel, self._receive = channel, receive
+    def __init__(self, channel: DataChannel, left: Callable[[], None] = lambda: None) -> None:
+        self._channel, self._left = channel, left
         self._connection: SecureConnection | None = None
         self._ending: asyncio.Task[None] | None = None  # else it might be collected
-        self.ticket = secrets.token_urlsafe(TICKET)
+        self.receive: Callable[[str], bytes] = ignored
         self.opened, self.is_busy = 0, False
 
     @property
     def is_open(self) -> bool:
-        """Whether a script listens."""
+        """Whether a page listens."""
         return self._connection is not None
 
     def hand_over(self, *messages: Message) -> None:
@@ -79,15 +61,14 @@ class PageStream:
         self.is_busy = True
         self._channel.take(self, messages)
 
-    def close(self) -> None:
-        """End the ticket and the connection. Thread-safe."""
-        self._receive = _ignored  # its owner refers to this stream
-        self._channel.end(self)
+    def say(self, message: bytes) -> None:
+        """Send a message at once; it is lost if the page is not connected. Thread-safe."""
+        self._channel.call(partial(self._say, message))
 
     # On the event loop
 
     async def serve(self, connection: SecureConnection) -> None:
-        """Serve a connection that has shown the ticket, until it ends or another one comes."""
+        """Serve a page's connection until it ends or another one comes."""
         before, self._connection = self._connection, connection
         self.is_busy = False
         self.opened += 1
@@ -100,11 +81,12 @@ class PageStream:
                 if not isinstance(text, str):
                     await connection.close(CloseCode.UNSUPPORTED_DATA, "expected text")
                     return
-                if connection.counts_change() and (answer := self._receive(text)):
+                if connection.counts_change() and (answer := self.receive(text)):
                     await connection.send(answer, text=True)
         finally:
             if self._connection is connection:
                 self._connection = None
+                self._left()
 
     def write(self, messages: Sequence[Message]) -> None:
         """Send messages, or wait until less is unsent."""
@@ -125,59 +107,57 @@ class PageStream:
         connection.send_data()
 
     def end(self) -> None:
-        """Begin to close the connection, if there is one."""
+        """Begin to close the connection, if there is one; its page connects again."""
+        self.receive = ignored  # its owner refers to this stream
         connection, self._connection = self._connection, None
         if connection is not None:
-            closing = connection.close(CloseCode.GOING_AWAY, "this page has ended")
+            closing = connection.close(CloseCode.SERVICE_RESTART, "the lab has moved")
             self._ending = connection.loop.create_task(closing)
+
+    def _say(self, message: bytes) -> None:
+        connection = self._connection
+        if connection is not None and connection.protocol.state is State.OPEN:
+            connection.protocol.send_text(message)
+            connection.send_data()
+
+
+Greet = Callable[[str, SecureConnection], PageStream | None]
 
 
 class DataChannel:
-    """The data channels of all pages of a server."""
+    """The data channels of all pages of a server.
 
-    def __init__(self) -> None:
-        self._streams = WeakValueDictionary[str, PageStream]()  # its page keeps it
+    Args:
+        greet: called on the event loop with the first message of each connection; returns what its
+            page is told, or None if the message is no valid greeting.
+    """
+
+    def __init__(self, greet: Greet = lambda *_: None) -> None:
+        self._greet = greet
         self._loop: asyncio.AbstractEventLoop | None = None
         self._ready: list[tuple[PageStream, Sequence[Message]]] = []
 
-    @property
-    def tickets(self) -> int:
-        """Number of valid tickets."""
-        return len(self._streams)
-
-    def open(self, receive: Callable[[str], bytes]) -> PageStream:
-        """A channel for a new page, with a ticket. Thread-safe.
-
-        Args:
-            receive: called on the event loop with each message of the page; returns the answer, or
-                nothing.
-        """
-        stream = PageStream(self, receive)
-        self._streams[stream.ticket] = stream
-        return stream
-
-    def end(self, stream: PageStream) -> None:
-        """End a ticket and its connection. Thread-safe."""
-        self._streams.pop(stream.ticket, None)
-        if self._loop is not None:
-            with suppress(RuntimeError):  # the server has stopped
-                self._loop.call_soon_threadsafe(stream.end)
-
     async def handle(self, connection: SecureConnection) -> None:
-        """Serve a connection, from its ticket on."""
+        """Serve a connection, from its greeting on."""
         self._loop = connection.loop
         with suppress(ConnectionClosed):
             try:
                 async with asyncio.timeout(GREETING):
-                    ticket = ticket_in(await connection.recv_data())
+                    text = await connection.recv_data()
             except TimeoutError:
-                await connection.close(CloseCode.TRY_AGAIN_LATER, "expected a ticket")
+                await connection.close(CloseCode.TRY_AGAIN_LATER, "expected a greeting")
                 return
-            stream = self._streams.get(ticket)
+            stream = self._greet(text, connection) if isinstance(text, str) else None
             if stream is None:
-                await connection.close(NO_TICKET, "expected a valid ticket")
+                await connection.close(NO_GREETING, "expected a valid greeting")
             else:
                 await stream.serve(connection)
+
+    def call(self, act: Callable[[], None]) -> None:
+        """Call a function on the event loop. Thread-safe."""
+        if self._loop is not None:
+            with suppress(RuntimeError):  # the server has stopped
+                self._loop.call_soon_threadsafe(act)
 
     def take(self, stream: PageStream, messages: Sequence[Message]) -> None:
         """Keep messages until `send`."""
@@ -185,13 +165,13 @@ class DataChannel:
 
     def send(self) -> None:
         """Send what has been handed over, with one call of the event loop."""
-        if self._ready and self._loop is not None:
+        if self._ready:
             ready, self._ready = self._ready, []
-            with suppress(RuntimeError):  # the server has stopped
-                self._loop.call_soon_threadsafe(_write, ready)
+            self.call(partial(_write, ready))
 
 
-def _ignored(_: str) -> bytes:
+def ignored(_: str) -> bytes:
+    """Receive a message for which nobody waits."""
     return b""
 
 

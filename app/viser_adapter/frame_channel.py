@@ -96,9 +96,6 @@ class FrameChannel:
 
     A short frame bypasses viser's queue if that is empty; any other goes through it, which keeps
     the order.
-
-    Attributes:
-        frames: number of frames that were not empty.
     """
 
     def __init__(self, client: viser.ClientHandle) -> None:
@@ -109,7 +106,6 @@ class FrameChannel:
         self._buffer = connection._state.message_buffer
         self._recorders = connection._record_handles
         self._collector: int | None = None
-        self.frames = 0
         self._messages: list[Message | GroupUpdate] = []
         self._queue = partial(type(connection).queue_message, connection)
         connection.queue_message = self._take  # of an earlier channel too, if there was one
@@ -127,7 +123,6 @@ class FrameChannel:
         """Send the messages of this thread immediately again."""
         self._collector = None
         if self._messages:
-            self.frames += 1
             _ready.setdefault(self._loop, []).append(self)
 
     def send(self) -> None:

@@ -16,7 +16,7 @@ SAID = (
     *("connect.opening", "connect.silent", "connect.blocked", "connect.offline", "connect.lost"),
     *("connect.building", "connect.loading", "connect.back", "connect.slow"),
     *("connect.forbidden", "connect.refused", "connect.version", "connect.picture_lost"),
-    *("connect.no_webgl", "connect.no_webgl_why", "connect.course", "connect.course_link"),
+    *("connect.picture_back", "connect.no_webgl", "connect.course_link"),
 )
 """Messages of browser_words.js."""
 TITLES = b"<title>Viser</title>", b"<title>OnPath</title>"

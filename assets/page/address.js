@@ -24,10 +24,4 @@
   const scheme = own.protocol === "https:" ? "wss:" : "ws:";
   own.searchParams.set(SERVER, `${scheme}//${own.host}${own.pathname}`);
   replace(null, "", own);
-
-  // Where this site is, without the page's place in it; see SITE_KEY in app/server/lab_server.py.
-  const path = location.pathname.replace(/(\/[cl]\/[a-z0-9]{1,32})?\/?(index\.html)?$/, "");
-  try {
-    localStorage.setItem("viser-user:site", location.origin + path);
-  } catch {}
 })();

@@ -5,7 +5,7 @@ const ownWords = (() => {
   const texts = JSON.parse(document.getElementById("op-words").textContent);
 
   function language() {
-    const shown = document.querySelector("[data-page]") ? [document.documentElement.lang] : [];
+    const shown = document.documentElement.matches(".op-stripped") ? [document.documentElement.lang] : [];
     const own = [...shown, ...navigator.languages].map((each) => each.split("-")[0]);
     return own.find((each) => each in texts) ?? "en";
   }

@@ -1,23 +1,19 @@
 // How finely the scene is drawn: plainly in a browser that draws in software, which spends most of its
-// time on drawing, and finely elsewhere. The lab, which builds the scene, reads the same entry; see
-// QUALITY_KEY in app/server/lab_server.py. In software, edges are not smoothed, the canvases of plots are
+// time on drawing, and finely elsewhere. The lab, which builds the scene, is told by the page's greeting; see
+// assets/web/channel/channel.ts. In software, edges are not smoothed, the canvases of plots are
 // kept in memory, and the background picture, which viser draws even when there is none, is left out.
 const webgl = (() => {
   "use strict";
 
-  const KEPT_AS = "viser-user:quality";
   const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
 
   const canvas = HTMLCanvasElement.prototype, getContext = canvas.getContext;
   const probe = document.createElement("canvas").getContext("webgl2");
-  if (probe === null) return { works: false };
+  if (probe === null) return { works: false, plain: true };
   const unmasked = probe.getExtension("WEBGL_debug_renderer_info")?.UNMASKED_RENDERER_WEBGL;
   const plain = SOFTWARE.test(probe.getParameter(unmasked ?? probe.RENDERER));
   probe.getExtension("WEBGL_lose_context")?.loseContext();
-  try {
-    localStorage.setItem(KEPT_AS, plain ? "plain" : "fine");
-  } catch {}  // a browser without storage has a fine scene
-  if (!plain) return { works: true };
+  if (!plain) return { works: true, plain };
 
   canvas.getContext = function (kind, options) {
     const cheap = kind === "2d" ? { willReadFrequently: true } : { antialias: false };
@@ -34,5 +30,5 @@ const webgl = (() => {
       return add.apply(scene, objects);
     };
   });
-  return { works: true };
+  return { works: true, plain };
 })();

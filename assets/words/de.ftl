@@ -217,7 +217,6 @@ keep-with_code_means = Wer den Code hat, kann dein Labor öffnen, sehen, was du 
 
 ## Die Klasse
 
-full-title = Das Labor ist voll
 full-text =
     { $places ->
         [one] Der einzige Platz ist besetzt.
@@ -479,14 +478,13 @@ aim-theta_ref = zielt auf seinen Sollpunkt
 
 ## Die Seite: was immer da ist
 
-connect-no_webgl = Dieser Browser kann das Labor nicht zeichnen
-connect-no_webgl_why = Die beiden Roboter werden mit WebGL 2 gezeichnet, das in diesem Browser abgeschaltet ist oder fehlt. Oft ist es wieder da, wenn in den Einstellungen des Browsers die „Grafikbeschleunigung“ (oder „Hardwarebeschleunigung“) eingeschaltet und der Browser neu gestartet wird. Vielleicht hat es auch ein anderer Browser.
-connect-course = Die Lektionen brauchen kein WebGL: Den Kurs gibt es auch als Seiten. Wer dieses Labor betreibt, erstellt sie mit „onpath export site course“.
+connect-no_webgl = Die Roboter werden nicht gezeichnet: Diesem Browser fehlt WebGL 2, oder es ist ausgeschaltet. Alles andere geht.
 connect-course_link = Zum Kurs
 connect-picture_lost = Das Bild der Roboter ging verloren; das Labor läuft weiter. Das Bild kommt von selbst zurück; wenn nicht, lade die Seite neu.
 connect-opening = Die Verbindung zum Labor wird aufgebaut …
 connect-building = Das Labor bereitet deine Seite vor. Wenn viele auf einmal kommen, dauert das etwas länger.
-connect-loading = Deine Seite ist da; Kurven und Knöpfe folgen.
+connect-loading = Das Bild der Roboter wird geladen. Alles andere geht schon.
+connect-picture_back = Das Bild der Roboter wird wiederhergestellt. Alles andere läuft weiter.
 connect-back = Das Labor war unterbrochen oder wurde neu gestartet. In ein paar Sekunden geht es für dich weiter.
 connect-slow = Das Labor ist gerade langsam: Sein Rechner ist ausgelastet, oder die Verbindung ist schlecht. Nichts geht verloren.
 connect-silent = Das Labor antwortet nicht. Läuft es noch? Diese Seite versucht weiter, es zu erreichen.

@@ -219,7 +219,6 @@ keep-with_code_means = Whoever has the code can open your lab, see what you did 
 
 ## The class
 
-full-title = The lab is full
 full-text =
     { $places ->
         [one] The only place is taken.
@@ -394,14 +393,13 @@ aim-theta_ref = aims at its reference point
 
 ## The page: what is always there
 
-connect-no_webgl = This browser cannot draw the lab
-connect-no_webgl_why = The two robots are drawn with WebGL 2, which is switched off in this browser or missing. It often comes back when “graphics acceleration” (or “hardware acceleration”) is switched on in the browser's settings and the browser is started again. Another browser may have it, too.
-connect-course = The lessons need no WebGL: the course also exists as pages. Whoever runs this lab makes them with “onpath export site course”.
+connect-no_webgl = The robots are not drawn: this browser has no WebGL 2, or it is switched off. Everything else works.
 connect-course_link = To the course
 connect-picture_lost = The picture of the robots was lost; the lab goes on. The picture comes back by itself; if it does not, load the page again.
 connect-opening = Connecting to the lab …
 connect-building = The lab is preparing your page. When many come at once, this takes a little longer.
-connect-loading = Your page is here; its plots and buttons follow.
+connect-loading = The picture of the robots is being loaded. Everything else works already.
+connect-picture_back = The picture of the robots is being restored. Everything else goes on.
 connect-back = The lab was interrupted or restarted. You are back in a few seconds.
 connect-slow = The lab is slow at the moment: its computer is busy, or the connection is bad. Nothing is lost.
 connect-silent = The lab does not answer. Is it still running? This page keeps trying to reach it.

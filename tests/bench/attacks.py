@@ -18,7 +18,7 @@ from typing import Any
 
 from typing_extensions import override
 from websockets.asyncio.client import ClientConnection
-from websockets.exceptions import WebSocketException
+from websockets.exceptions import ConnectionClosed, WebSocketException
 from websockets.frames import Opcode
 
 from onpath.app.viser_adapter.data_channel import SUBPROTOCOL as DATA
@@ -40,7 +40,6 @@ from tests.bench.hostile_messages import (
 )
 from tests.bench.raw_socket import frames, handshake
 from tests.bench.simulated_browser import Browser, stand_back
-from tests.support.channel import hello
 
 SOURCE = "127.0.0.2" if sys.platform == "linux" else "127.0.0.1"
 RATE = 0.9 * Limits().changes_per_second  # of changed widgets or drags; no tab is closed for that
@@ -112,21 +111,26 @@ class Script(Browser):
         await asyncio.sleep(until - time.monotonic())
 
     @override
-    async def _read_data(self, ticket: str) -> None:
-        draw = random.Random(ticket)
-        await again(lambda: self._speak(ticket, draw))
+    async def _talk(self, socket: ClientConnection) -> None:
+        draw = random.Random(self._page)
+        await self._speak(socket, draw)
+        await again(lambda: self._come_back(draw))
 
-    async def _speak(self, ticket: str, draw: random.Random) -> None:
-        async with self._connected(DATA) as data:
-            await data.send(hello(ticket))
-            reading = asyncio.create_task(_read_all(data))
-            try:
-                while not reading.done():
-                    message = self._say(draw)
-                    await data.send(message)
-                    await asyncio.sleep(max(1 / RATE, len(message) / BYTES))
-            finally:
-                reading.cancel()
+    async def _come_back(self, draw: random.Random) -> None:
+        async with self._greeted() as socket:
+            await self._speak(socket, draw)
+
+    async def _speak(self, data: ClientConnection, draw: random.Random) -> None:
+        reading = asyncio.create_task(_read_all(data))
+        try:
+            while not reading.done():
+                message = self._say(draw)
+                await data.send(message)
+                await asyncio.sleep(max(1 / RATE, len(message) / BYTES))
+        except ConnectionClosed:
+            pass  # for what it has said
+        finally:
+            reading.cancel()
 
 
 async def _read_all(data: ClientConnection) -> None:
@@ -284,7 +288,7 @@ ATTACKS: dict[str, Attack] = {
     "wild scripts": scripts(8, wild_message),
     "one dear tab": scripts(1, dear_message),
     "dear tabs": scripts(8, dear_message),
-    "tickets": connections(20, [frames(b"x" * 32, opcode=Opcode.TEXT), UNFINISHED], [DATA]),
+    "greetings": connections(20, [frames(b"x" * 32, opcode=Opcode.TEXT), UNFINISHED], [DATA]),
     "come and go": tabs(20, leave),  # D18
     "floods": connections(20, [100 * GREETING, TOO_LARGE]),
     "broken frames": connections(20, [GREETING + broken for broken in BROKEN.values()]),

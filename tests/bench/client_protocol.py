@@ -10,8 +10,11 @@ import numpy as np
 import viser
 import zstandard
 
+from onpath.app.channel.messages import Hello, Seen, encoded
 from onpath.app.common.per_thread import per_thread
 
+SEEN = encoded(Seen()).decode()
+"""Tells that a page is drawn."""
 SUBPROTOCOL = f"viser-v{viser.__version__}"
 CAMERA = {
     "wxyz": [1.0, 0.0, 0.0, 0.0],
@@ -46,6 +49,16 @@ def answer(message: dict[str, Any], stored: Mapping[str, str] | None = None) -> 
         case {"type": "SetCameraUpDirectionMessage", "initial": False, "position": up}:
             return packed("ViewerCameraMessage", **{**CAMERA, "up_direction": up})
     return None
+
+
+def hello(page: str, **kept: str) -> str:
+    """The first message of a page's own websocket.
+
+    Args:
+        page: its number, which viser's websocket shows as well.
+        kept: what the browser keeps; see `Hello`.
+    """
+    return encoded(Hello(page=page, **kept)).decode()
 
 
 class MessageHeader(msgspec.Struct):

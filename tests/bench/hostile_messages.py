@@ -7,13 +7,22 @@ import json
 import math
 import random
 from collections.abc import Callable
-from typing import Any
+from typing import Any, get_args
 
 from websockets.frames import Opcode
 
+from onpath.app.channel.messages import (
+    Dark,
+    Hello,
+    JointSymbol,
+    Light,
+    Resized,
+    Seen,
+    Skip,
+    encoded,
+)
 from onpath.app.lab.commands.command_codec import page_commands
 from onpath.app.server.built_in_course import built_in_course
-from onpath.app.server.page_data import LIGHTS, RECORD, RESIZED, SKIP
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS
@@ -104,7 +113,18 @@ COMMANDS = [
     '{"do": "UseShared", "text": "ONPATH1-aaaa"}',
 ]
 """Messages for a data channel: some are no commands, others are commands that cost much."""
-OWN = [RESIZED, SKIP, RECORD, *LIGHTS]
+OWN = [
+    encoded(each).decode()
+    for each in (
+        Resized(),
+        Skip(),
+        Seen(),
+        Dark(True),
+        Dark(False),
+        Hello(page="0" * 32),
+    )
+]
+OWN += [encoded(Light(symbol)).decode() for symbol in get_args(JointSymbol)]
 """Messages of a page that are no commands."""
 NUMBERS = [-1e9, -1.0, -1e-9, 0.0, 1e-300, 0.05, 0.3, 1.0, 1e9]
 NAMES = [*("left", "right", "de", "en", "K1", "speed", "dt", "delay", "certain"), *ROBOTS, *LAWS]

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import select
 import socket
-from collections.abc import Mapping
 
 from websockets.frames import Frame, Opcode
 from websockets.sync.client import ClientConnection
 
+from onpath.app.server.arrivals import PAGE_KEY
 from tests.bench.client_protocol import SUBPROTOCOL, answer, unpacked
 
 WAIT = 10.0  # [s]
-QUESTIONS = 2  # number of a lab's questions to a new client
 
 
 def frames(*payloads: bytes, opcode: Opcode = Opcode.BINARY) -> bytes:
@@ -60,12 +59,10 @@ def is_closed(raw: socket.socket) -> bool:
     return False
 
 
-def answer_questions(client: ClientConnection, stored: Mapping[str, str] | None = None) -> None:
-    """Answer the initial questions to a new client, but no later ones."""
-    answered = 0
-    while answered < QUESTIONS:
+def answer_question(client: ClientConnection, page: str) -> None:
+    """Answer the question to which page a new client belongs."""
+    while True:
         raw = client.recv(WAIT)
         assert isinstance(raw, bytes)
-        for reply in filter(None, (answer(message, stored) for message in unpacked(raw))):
-            client.send(reply)
-            answered += 1
+        if replies := list(filter(None, (answer(m, {PAGE_KEY: page}) for m in unpacked(raw)))):
+            return client.send(replies[0])

@@ -10,11 +10,11 @@ from __future__ import annotations
 import asyncio
 import math
 import os
-import re
+import secrets
 import sys
 import time
 from collections.abc import AsyncGenerator
-from contextlib import aclosing, suppress
+from contextlib import aclosing, asynccontextmanager, suppress
 from dataclasses import dataclass, field
 from http import HTTPStatus
 from pathlib import Path
@@ -26,16 +26,18 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidMessage, InvalidStatus
 from websockets.typing import Subprotocol
 
+from onpath.app.server.arrivals import PAGE_KEY
 from onpath.app.viser_adapter.data_channel import SUBPROTOCOL as DATA
 from tests.bench.client_protocol import (
     CAMERA,
+    SEEN,
     SUBPROTOCOL,
     answer,
+    hello,
     message_headers,
     packed,
     unpacked,
 )
-from tests.support.channel import hello
 
 LAST = 19  # the lowest priority
 TOGETHER = Path("/proc/self/autogroup")  # priority of a whole session, on Linux
@@ -43,9 +45,9 @@ HAND_INTERVAL = 0.05  # [s] between a hand's messages; no browser sends more oft
 CYCLE = 4.0  # [s]: pull, rest, move a slider, rest
 MOVING = "/links"
 STEADY = 10  # poses after which a browser counts as settled
-ANSWERED = {"LocalStorageGetItemRequestMessage", "SetCameraUpDirectionMessage"}
-ANSWERED |= {"GuiSliderMessage", "BatchedMeshesMessage", "GuiHtmlMessage"}
-TICKET = re.compile(r'data-ticket="([^"]+)"')
+ANSWERED = {"LocalStorageGetItemRequestMessage"}
+ANSWERED |= {"GuiSliderMessage", "BatchedMeshesMessage"}
+SEES = 2.0  # [s] between messages that the page is drawn
 
 
 class NotServed(Exception):
@@ -91,7 +93,7 @@ class Browser:
     shown: list[float] = field(default_factory=list)
     received: int = 0
     told: int = 0
-    _data: asyncio.Task[None] | None = None
+    _page: str = field(default_factory=lambda: secrets.token_hex(16))
     _slider: str = ""
     _owner: str = ""
 
@@ -101,21 +103,36 @@ class Browser:
         Raises:
             OSError, WebSocketException: the connection failed.
         """
-        async with self._connected(SUBPROTOCOL) as socket:
+        async with self._greeted() as data, self._connected(SUBPROTOCOL) as socket:
             await socket.send(packed("ViewerCameraMessage", **CAMERA))
             until = time.monotonic() + seconds
-            tasks = [
-                asyncio.create_task(do) for do in (self._read(socket), self._use(socket, until))
-            ]
+            does = self._read(socket), self._use(socket, until), self._talk(data)
+            tasks = [asyncio.create_task(do) for do in does]
             try:
                 done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
                 for task in done:
                     task.result()
             finally:
-                tasks += [] if self._data is None else [self._data]
                 for task in tasks:
                     task.cancel()
                 await asyncio.gather(*tasks, return_exceptions=True)
+
+    @asynccontextmanager
+    async def _greeted(self) -> AsyncGenerator[ClientConnection]:
+        """The page's own websocket, which tells that the page is drawn."""
+        async with self._connected(DATA) as socket:
+            await socket.send(hello(self._page))
+            seeing = asyncio.create_task(self._see(socket))
+            try:
+                yield socket
+            finally:
+                seeing.cancel()
+
+    async def _see(self, socket: ClientConnection) -> None:
+        with suppress(ConnectionClosed):
+            while True:
+                await asyncio.sleep(SEES)
+                await socket.send(SEEN)
 
     def _connected(self, subprotocol: str) -> connect:
         options: dict[str, Any] = {"max_size": None, "compression": None}
@@ -124,13 +141,11 @@ class Browser:
         address = f"ws://127.0.0.1:{self.port}"
         return connect(address, subprotocols=[Subprotocol(subprotocol)], **options)
 
-    async def _read_data(self, ticket: str) -> None:
+    async def _talk(self, socket: ClientConnection) -> None:
         """Read what the page's own script is told."""
-        async with self._connected(DATA) as socket:
-            await socket.send(hello(ticket))
-            async for text in socket:
-                self.received += len(text)
-                self.told += 1
+        async for text in socket:
+            self.received += len(text)
+            self.told += 1
 
     async def _read(self, socket: ClientConnection) -> None:
         async for raw in socket:
@@ -149,16 +164,12 @@ class Browser:
 
     async def _answer(self, socket: ClientConnection, message: dict[str, Any]) -> None:
         kind = message["type"]
-        if reply := answer(message):
+        if reply := answer(message, {PAGE_KEY: self._page}):
             await socket.send(reply)
         elif kind == "GuiSliderMessage" and message["props"]["label"].startswith("K1"):
             self._slider = message["uuid"]
         elif kind == "BatchedMeshesMessage" and message["name"] == "/grips":
             self._owner = message["owner"]
-        elif kind == "GuiHtmlMessage" and (found := TICKET.search(message["props"]["content"])):
-            if self._data is not None:
-                self._data.cancel()
-            self._data = asyncio.create_task(self._read_data(found[1]))
 
     async def _use(self, socket: ClientConnection, until: float) -> None:
         while not self._slider and time.monotonic() < until:

@@ -8,8 +8,6 @@ import subprocess
 import sys
 from contextlib import ExitStack
 from pathlib import Path
-from types import SimpleNamespace
-from typing import Any
 
 import pytest
 
@@ -49,8 +47,13 @@ def test_a_measured_server_admits_all_clients_from_one_address() -> None:
     for clients in range(1, MOST + 1):
         queue, inside = AdmissionQueue(places_for(clients)), list[int]()
         for number in range(clients):
-            client: Any = SimpleNamespace(client_id=number)
-            queue.admit(client, lambda n=number: inside.append(n), "127.0.0.1", always=False)
+            queue.admit(
+                number,
+                enter=lambda n=number: inside.append(n),
+                wait=lambda *_: None,
+                address="127.0.0.1",
+                always=False,
+            )
         assert inside == list(range(clients))
 
 

@@ -12,9 +12,7 @@ import numpy as np
 from typing_extensions import override
 from websockets.asyncio.client import ClientConnection
 
-from onpath.app.viser_adapter.data_channel import SUBPROTOCOL as DATA
 from tests.bench.simulated_browser import Browser
-from tests.support.channel import hello
 
 WINDOW = 2.0  # [s]
 TICKS = 1e-4  # [s], unit of times in frames
@@ -73,16 +71,14 @@ class Witness(Browser):
         await asyncio.sleep(until - time.monotonic())
 
     @override
-    async def _read_data(self, ticket: str) -> None:
-        async with self._connected(DATA) as socket:
-            await socket.send(hello(ticket))
-            asking = asyncio.create_task(self._ask(socket))
-            try:
-                async for text in socket:
-                    self.told += 1
-                    self._note(msgspec.json.decode(text))
-            finally:
-                asking.cancel()
+    async def _talk(self, socket: ClientConnection) -> None:
+        asking = asyncio.create_task(self._ask(socket))
+        try:
+            async for text in socket:
+                self.told += 1
+                self._note(msgspec.json.decode(text))
+        finally:
+            asking.cancel()
 
     async def _ask(self, socket: ClientConnection) -> None:
         while True:

@@ -7,15 +7,12 @@ a simulated clock. The messages are those of a real lab.
 from __future__ import annotations
 
 import json
-import re
 from dataclasses import asdict, dataclass
 from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from websockets.sync.client import connect
-from websockets.typing import Subprotocol
 
 pytest.importorskip("playwright")
 
@@ -23,9 +20,8 @@ from playwright.sync_api import Browser
 
 from onpath.app.page.own_part import own_part
 from onpath.app.server.lab_server import LabServer
-from onpath.app.viser_adapter.data_channel import SUBPROTOCOL
 from onpath.app.viser_adapter.page_scripts import our_scripts
-from tests.support.channel import hello
+from tests.support.own_socket import OwnSocket
 from tests.support.student import Student
 
 SITE = "http://lab.example/"
@@ -42,7 +38,7 @@ NETWORK = """plan => {
     const FORGETS = 40 // [s] until a server has noticed that a page does not answer any more
     const now = () => Date.now() / 1000, later = (act, after) => setTimeout(act, 1000 * after)
     const drawn = (() => { let n = 0; return () => plan.delays[n++ % plan.delays.length] })()
-    const lab = { up: true, tickets: new Map(), tabs: [], datas: [] }
+    const lab = { up: true, visits: new Map(), tabs: [], datas: [] }
     Object.assign(lab, { wrong: [], whole: 0, same: 0, calm: 0 })
     window.lab = lab
     let number = 0
@@ -55,12 +51,21 @@ NETWORK = """plan => {
         lab.calm = now() + NOTICED
         document.dispatchEvent(new Event("visibilitychange"))
     }
-    const notice = () => { // of a lab that is full
-        const box = document.createElement("div")
-        box.className = "mantine-Modal-content"
-        return box
+    const reachable = () => lab.up && !lab.offline && !plan.forbidden
+
+    // What the server knows of a page, as long as it has one of its websockets.
+    class Visit {
+        constructor(page) { Object.assign(this, { page, data: null, tab: null, isOpen: false }) }
+        get scene() { return this.tab ? this.tab.client : 0 }
+        tellScene() { this.data?.tell(JSON.stringify({ is: "state", scene: this.scene })) }
+        lose(part, held) {
+            if (this[part] !== held) return
+            this[part] = null
+            if (part === "tab") this.tellScene()
+            const isLast = !this.data && !this.tab && lab.visits.get(this.page) === this
+            if (isLast) lab.visits.delete(this.page)
+        }
     }
-    const reachable = () => lab.up && !lab.offline
 
     class FakeWorker extends EventTarget {
         constructor() { super(); this.generation = 0 }
@@ -72,12 +77,12 @@ NETWORK = """plan => {
         postMessage({ type }) {
             if (type !== "set_server" && type !== "retry") return
             this.leave?.()
-            const tab = { at: now(), alive: true, opens: true, mute: false, ticket: "" }
+            const tab = { at: now(), alive: true, opens: true, mute: false, client: 0, visit: null }
             const generation = ++this.generation, isLast = () => generation === this.generation
             const current = () => tab.alive && isLast()
             const end = () => {
                 tab.alive = false
-                lab.tickets.delete(tab.ticket)
+                tab.visit?.lose("tab", tab)
                 if (this.current === tab) this.current = null
             }
             tab.drop = () => {
@@ -88,12 +93,12 @@ NETWORK = """plan => {
             }
             tab.die = () => { // and the page does not notice
                 tab.alive = false
-                lab.tickets.delete(tab.ticket)
+                tab.visit?.lose("tab", tab)
             }
             tab.fallMute = () => { // and nobody notices: a router has forgotten the connection
                 tab.mute = true
                 tab.alive = false
-                later(() => lab.tickets.delete(tab.ticket), FORGETS)
+                later(() => tab.visit?.lose("tab", tab), FORGETS)
             }
             later(() => {
                 if (!isLast() || !tab.opens) return
@@ -104,43 +109,47 @@ NETWORK = """plan => {
             lab.tabs.push(tab)
             later(() => {
                 if (!current()) return
-                if (!reachable() || plan.forbidden) return tab.drop()
+                if (!reachable()) return tab.drop()
                 this.current = tab
                 tab.opens = false
                 this.say({ type: "connected" })
-                if (plan.waits) document.querySelector("#root").append(notice())
-                later(() => {
-                    if (!current()) return
-                    tab.ticket = `${++number}`
-                    const { ticket } = tab
-                    lab.tickets.set(ticket, tab)
-                    later(() => current() && this.show(ticket), drawn())
-                }, plan.waits ?? drawn())
+                later(() => current() && this.belong(tab), drawn()) // asked, and answered
             }, reachable() ? drawn() : 0.01)
         }
-        show(ticket) {
+        belong(tab) {
+            const visit = lab.visits.get(localStorage.getItem("viser-user:page"))
+            if (!visit) return tab.drop()
+            visit.tab?.drop()
+            Object.assign(tab, { visit, client: ++number })
+            visit.tab = tab
+            later(() => {
+                if (!tab.alive || this.current !== tab) return
+                this.show(tab.client)
+                visit.tellScene()
+            }, drawn())
+        }
+        show(client) {
             this.say({ type: "message_batch" })
             const root = document.querySelector("#root")
             root.innerHTML = plan.page
-            root.querySelector("[data-page]").dataset.ticket = ticket
+            root.querySelector("[data-page]").dataset.client = client
         }
         get isWhole() {
-            const shown = document.querySelector("[data-page]")?.dataset.ticket
-            const told = lab.datas.some(data => data.told === shown && !data.mute)
-            return Boolean(this.current && shown && shown === this.current.ticket && told)
+            const shown = Number(document.querySelector("[data-page]")?.dataset.client ?? 0)
+            const told = lab.datas.some(data => data.hears && data.scene === shown)
+            return Boolean(this.current && shown && shown === this.current.client && told)
         }
     }
     window.Worker = FakeWorker
     window.fetch = async () => {
-        if (!reachable()) throw new TypeError("no network")
+        if (!lab.up || lab.offline) throw new TypeError("no network")
         return { status: plan.forbidden ? 403 : 200 }
     }
     window.WebSocket = class extends EventTarget {
         static OPEN = 1
         constructor() {
             super()
-            this.readyState = 0
-            this.told = ""
+            Object.assign(this, { readyState: 0, at: now(), visit: null, scene: -1 })
             lab.datas.push(this)
             later(() => {
                 if (this.readyState > 1) return
@@ -150,33 +159,49 @@ NETWORK = """plan => {
             }, reachable() ? drawn() : 0.01)
         }
         send(text) {
-            if (this.greeting) return
-            const { ticket } = this.greeting = JSON.parse(text)
+            const { is, page } = JSON.parse(text)
+            if (is !== "hello") return
             later(() => {
-                const tab = lab.tickets.get(ticket)
-                if (this.mute) return
-                if (!tab) return this.end(4001)
+                if (this.mute || this.readyState !== 1) return
+                let visit = lab.visits.get(page)
+                if (!visit) lab.visits.set(page, visit = new Visit(page))
+                visit.data?.end(1001)
+                visit.data = this
+                if (plan.waits && !visit.isOpen) this.hear('{"is":"wait","text":"full"}')
                 later(() => {
-                    if (this.mute) return
-                    if (this.readyState !== 1 || !lab.tickets.has(ticket)) return this.end(1001)
+                    if (visit.data !== this || this.mute || this.readyState !== 1) return
+                    visit.isOpen = true
+                    this.visit = visit
                     for (const message of plan.messages) this.hear(message)
-                    this.told = ticket
-                    this.beat(tab)
-                }, drawn())
+                    visit.tellScene()
+                    this.beat()
+                }, plan.waits ?? drawn())
             }, drawn())
         }
-        beat(tab) {
+        beat() {
             if (this.readyState !== 1 || this.mute) return
-            if (!lab.tickets.has(tab.ticket)) return this.end(1001)
             this.hear('{"is":"alive"}')
-            later(() => this.beat(tab), 1)
+            later(() => this.beat(), 1)
         }
-        hear(data) { this.dispatchEvent(new MessageEvent("message", { data })) }
+        tell(text) {
+            if (this.hears) this.hear(text)
+        }
+        hear(data) {
+            const message = JSON.parse(data)
+            if (message.is === "state" && "scene" in message) this.scene = message.scene
+            this.dispatchEvent(new MessageEvent("message", { data }))
+        }
+        fallMute() {
+            this.mute = true
+            later(() => this.forget(), FORGETS)
+        }
+        forget() { for (const visit of lab.visits.values()) visit.lose("data", this) }
+        get hears() { return this.visit && !this.mute && this.readyState === 1 }
         end(code) {
             if (this.readyState > 1) return
             this.readyState = 3
-            this.told = ""
             lab.same = 0
+            this.forget()
             const event = new Event("close")
             event.code = code
             this.dispatchEvent(event)
@@ -189,15 +214,15 @@ NETWORK = """plan => {
         silently: () => lab.tabs.forEach(tab => tab.die()),
         mute: () => {
             for (const tab of lab.tabs) if (tab.alive) tab.fallMute()
-            for (const data of lab.datas) data.mute = true
+            for (const data of lab.datas) data.fallMute()
             lab.calm = now() + NOTICED
         },
         data: code => lab.datas.forEach(data => data.end(code)),
         restart: (_, lasts) => {
             lab.up = false
-            lab.tickets.clear()
             faults.viser()
             faults.data(1006)
+            lab.visits.clear()
             later(() => (lab.up = true), lasts)
         },
         offline: (_, lasts) => {
@@ -285,29 +310,22 @@ class Told(dict[str, Any]):
 
 @pytest.fixture(scope="module")
 def told(server: LabServer) -> Told:
-    """What a real lab tells a page at first: viser's page, and the messages of the data channel."""
+    """What a real lab tells a page at first: viser's part, and its own messages."""
     address = f"ws://127.0.0.1:{server.server.get_port()}"
-    with Student(address) as student:
+    with Student(address) as student, OwnSocket(address) as own:
         student.open()
 
         def page() -> str:
             contents = (str(widget.get("content", "")) for widget in student.widgets.values())
-            return next((text for text in contents if "data-ticket" in text), "")
+            return next((text for text in contents if "data-client" in text), "")
 
-        student.read(lambda: page() != "")
-        ticket = re.search('data-ticket="([^"]+)"', page())
-        assert ticket is not None
-        messages, kinds = list[str](), set[str]()
-        protocol = [Subprotocol(SUBPROTOCOL)]
-        with connect(address, subprotocols=protocol, compression=None) as socket:
-            socket.send(hello(ticket[1]))
-            while not kinds >= {"state", "path", "frame"}:
-                student.read_what_has_come()
-                message = json.loads(socket.recv(10))
-                if "achieved" in message:  # this machine may be busy just now
-                    message["achieved"] = message.get("rate", 1.0)
+        student.read(lambda: page() != "" and own.kinds() >= {"words", "state", "path", "frame"})
+        messages = list[str]()
+        for message in own.told:
+            if "achieved" in message:  # this machine may be busy just now
+                message["achieved"] = message.get("rate", 1.0)
+            if message["is"] != "alive":
                 messages.append(json.dumps(message))
-                kinds.add(message["is"])
         return Told(page=page(), messages=messages)
 
 
@@ -341,7 +359,7 @@ class Visit:
             self.page.clock.run_for(5000)
         self.parts: dict[str, Any] = self.page.evaluate(PARTS)
         self.wrong: list[Any] = self.page.evaluate("lab.wrong")
-        self.last_try: float = self.page.evaluate("lab.tabs.at(-1).at")
+        self.last_try: float = self.page.evaluate("lab.datas.at(-1).at")
         context.close()
 
     def _stand_still(self, away: Away) -> None:

@@ -193,8 +193,8 @@ class Tab:
         shape = camera.image_width / camera.image_height
         off = camera.image_width * box["height"] - camera.image_height * box["width"]
         same = abs(off) <= max(box["width"], box["height"])  # the browser rounds to whole pixels
-        feed = self.display
-        return same and isinstance(feed, LabFeed) and abs(feed.page._framed - shape) < 0.02 * shape
+        page = self.display.page if isinstance(self.display, LabFeed) else None
+        return same and page is not None and abs(page._framed - shape) < 0.02 * shape
 
     @property
     def lab(self) -> Lab:
@@ -321,13 +321,14 @@ class Tab:
     def is_built(self) -> bool:
         """Whether the page is that of the current robot, and is not about to be rebuilt."""
         feed = self.scheduled.display  # a teacher's page is another display than the first one
-        if not isinstance(feed, LabFeed) or not feed.page.is_ready:
+        page = feed.page if isinstance(feed, LabFeed) else None
+        if page is None or not page.is_ready:
             return False
-        if isinstance(feed.page, TeacherPage):
+        if isinstance(page, TeacherPage):
             return True
-        column, version = feed.page.column, self.lab.lessons.version
+        column, version = page._context.text.column, self.lab.lessons.version
         told = column is not None and column.version == version and bool(column.message)
-        return told and feed.page._built == (page_key(self.lab),)
+        return told and page._built == (page_key(self.lab),)
 
     def wait_until_built(self) -> None:
         """Return when the browser has the whole page; a button of the page before does nothing."""

@@ -44,7 +44,7 @@ class Site:
 
     def student(self, prefix: str, origin: str = ORIGIN) -> Student:
         """A browser under a prefix, "c/CODE" or "l/NAME"."""
-        return Student(f"ws://{HOST}/{prefix}", self.port, channel=True, Origin=origin)
+        return Student(f"ws://{HOST}/{prefix}", self.port, Origin=origin)
 
     def serving(self) -> LabProcess:
         """The process that has connections; there must be one only."""

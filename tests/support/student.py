@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import secrets
 import socket
 import time
 from collections.abc import Callable
@@ -17,13 +18,21 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Subprotocol
 
+from onpath.app.server.arrivals import PAGE_KEY
 from onpath.app.viser_adapter.addresses import prefix_of, storage_key
 from onpath.app.viser_adapter.data_channel import SUBPROTOCOL as DATA
-from tests.bench.client_protocol import CAMERA, SUBPROTOCOL, answer, packed, unpacked
-from tests.bench.simulated_browser import MOVING
-from tests.support.channel import hello
+from tests.bench.client_protocol import CAMERA, SEEN, SUBPROTOCOL, answer, hello, packed, unpacked
+from tests.bench.simulated_browser import MOVING, SEES
 
+MOST_CODES = 8
 PATIENCE = 60.0  # [s]; only ends a test that would hang
+KEPT = ("teacher", "speaks", "sounds", "first_minute")
+
+
+def remembered(code: str, known: str) -> str:
+    """The codes that a browser keeps when it is told one, as `keepLab` of the page's script."""
+    codes = [code, *re.findall(r"\b[a-z0-9]{12}\b", known)]
+    return ",".join(list(dict.fromkeys(codes))[:MOST_CODES])
 
 
 class Student:
@@ -32,7 +41,6 @@ class Student:
     Args:
         address: URL of the websocket.
         through: port on this machine to connect to, instead of that in the address.
-        channel: whether it opens the data channel, to see lessons and what the lab tells.
         headers: headers of the handshake.
 
     Attributes:
@@ -42,17 +50,16 @@ class Student:
         received: amount of data, [B].
         lesson: the last message of the data channel about the lessons; see `lesson_message`.
         message: what the lab tells its user, from that channel.
+        draws: whether the tab is in front.
     """
 
-    def __init__(
-        self, address: str, through: int | None = None, channel: bool = False, **headers: str
-    ) -> None:
+    def __init__(self, address: str, through: int | None = None, **headers: str) -> None:
         self.address, self.headers = address, headers
         self._through, self.moving, self.received = through, 0, 0
         self.kept: dict[str, str] = {}
         self.widgets: dict[str, dict[str, Any]] = {}
         self._socket: ClientConnection | None = None
-        self._has_channel, self._ticket = channel, ""
+        self.draws, self._page, self._saw = True, "", 0.0
         self._data: ClientConnection | None = None
         self.lesson: dict[str, Any] = {}
         self.message = ""
@@ -72,24 +79,34 @@ class Student:
     @property
     def code(self) -> str:
         """Lab code of the lab."""
-        key = storage_key("onpath_sessions", prefix_of(urlsplit(self.address).path))
-        return self.kept.get(key, "").partition(",")[0]
+        return self.kept.get(self._labs, "").partition(",")[0]
+
+    @property
+    def _labs(self) -> str:
+        """Where the browser keeps the codes of its labs."""
+        return storage_key("onpath_sessions", prefix_of(urlsplit(self.address).path))
 
     def open(self) -> None:
         """Open the page, or open it again."""
         self.widgets.clear()
-        self.lesson, self.message, self._ticket = {}, "", ""
-        way = self._way()
-        self._socket = connect(
+        self.lesson, self.message, self._page = {}, "", secrets.token_hex(16)
+        self._data = self._connected(DATA)
+        kept = {key: self.kept.get(f"onpath_{key}", "") for key in KEPT}
+        self._data.send(hello(self._page, labs=self.kept.get(self._labs, ""), **kept))
+        self._socket = self._connected(SUBPROTOCOL)
+        self._socket.send(packed("ViewerCameraMessage", **CAMERA))
+
+    def _connected(self, subprotocol: str) -> ClientConnection:
+        way = self._through
+        return connect(
             self.address,
-            subprotocols=[Subprotocol(SUBPROTOCOL)],
+            sock=socket.create_connection(("127.0.0.1", way)) if way else None,
+            subprotocols=[Subprotocol(subprotocol)],
             additional_headers=self.headers,
             compression=None,
             max_size=None,
             close_timeout=1.0,
-            sock=way,
         )
-        self._socket.send(packed("ViewerCameraMessage", **CAMERA))
 
     def reopen(self) -> None:
         """Reconnect as viser's page does: retry until it succeeds."""
@@ -145,10 +162,9 @@ class Student:
 
     def set(self, label: str, value: Any) -> None:
         """Set the value of a widget, as by moving a slider or pressing a button."""
-        if self._has_channel:
-            self.read(lambda: self.has_widget(label))
-            if commands := self._commands(label):
-                return self.tell(*commands)
+        self.read(lambda: self.has_widget(label))
+        if commands := self._commands(label):
+            return self.tell(*commands)
         widget = self.find(label)
         self.send("GuiUpdateMessage", uuid=widget["uuid"], updates={"value": value})
 
@@ -169,7 +185,6 @@ class Student:
 
     def tell(self, *commands: dict[str, Any]) -> None:
         """Send commands through the data channel."""
-        self.read(lambda: self._data is not None)
         assert self._data is not None
         for command in commands:
             self._data.send(json.dumps(command))
@@ -217,39 +232,28 @@ class Student:
         return commands if isinstance(commands, list) else [commands]
 
     def _hear(self) -> None:
-        """Open the data channel once its ticket is known, and take what it tells."""
-        if not self._has_channel:
-            return
-        found = re.search(
-            'data-ticket="([^"]+)"', "".join(str(w.get("content")) for w in self.widgets.values())
-        )
-        if found is None:
-            return
-        if found[1] != self._ticket:
-            self._ticket = found[1]
-            self._data = connect(
-                self.address,
-                sock=self._way(),
-                subprotocols=[Subprotocol(DATA)],
-                additional_headers=self.headers,
-                compression=None,
-                max_size=None,
-                close_timeout=1.0,
-            )
-            self._data.send(hello(self._ticket))
+        """Take what the page's own websocket tells, and tell that the page is drawn."""
         assert self._data is not None
         with suppress(TimeoutError, ConnectionClosed):
+            if self.draws and time.monotonic() > self._saw + SEES:
+                self._saw = time.monotonic()
+                self._data.send(SEEN)
             while True:
                 raw = self._data.recv(timeout=0)
                 self.received += len(raw)
-                message = json.loads(raw)
-                if message["is"] == "lesson":
-                    self.lesson = message
-                elif message["is"] == "state":
-                    self.message = message.get("message", self.message)
+                self._take_message(json.loads(raw))
 
-    def _way(self) -> socket.socket | None:
-        return socket.create_connection(("127.0.0.1", self._through)) if self._through else None
+    def _take_message(self, message: dict[str, Any]) -> None:
+        match message:
+            case {"is": "lab", "code": code}:
+                known = self.kept.get(self._labs, "")
+                self.kept[self._labs] = remembered(code, known)
+            case {"is": "store", "key": key, "value": value}:
+                self.kept[f"onpath_{key}"] = value
+            case {"is": "lesson"}:
+                self.lesson = message
+            case {"is": "state"}:
+                self.message = message.get("message", self.message)
 
     def _labels(self) -> dict[str, dict[str, Any]]:
         shown = [w for w in self.widgets.values() if w["value"] is not None]
@@ -265,11 +269,9 @@ class Student:
     def _take(self, message: dict[str, Any]) -> None:
         kind = message["type"]
         self.moving += message.get("name") == MOVING
-        if reply := answer(message, self.kept):
+        if reply := answer(message, {PAGE_KEY: self._page}):
             assert self._socket is not None
             self._socket.send(reply)
-        elif kind == "LocalStorageSetItemMessage":
-            self.kept[message["key"]] = message["value"]
         elif "props" in message and "uuid" in message:
             widget = {"uuid": message["uuid"], "value": message.get("value")}
             self.widgets[message["uuid"]] = {**widget, **message["props"]}

@@ -10,7 +10,7 @@ from onpath.models.control.sides import SIDES
 
 def page_style(template: str) -> Markup:
     """A style template of assets/templates, rendered."""
-    dark = inlined("page/dark_colours.css")
+    dark = inlined("web/dark_colours.css")
     return part_of_page(template, dark=dark, tones={"light": _tones(LIGHT), "dark": _tones(DARK)})
 
 

@@ -3,19 +3,22 @@
 import { sampleAt, type Act, type Change, type Engine, type PathShape, type RowData, type Sample, type SideSample, type SideText, type State, type Vector } from "../core/engine"
 import { AT_JOINTS } from "../core/symbols"
 import { Files } from "./files"
+import { keep, keepLab, kept, siteOf } from "./kept"
 import {
-    PROTOCOL, type Ask, type Command, type Compared, type CompareSheet, type DisplaySheet, type FrameMessage, type HelpSheet, type Index, type KeepSheet,
+    PROTOCOL, type Ask, type Command, type Compared, type CompareSheet, type DisplaySheet, type FrameMessage, type Hello, type HelpSheet, type Index, type KeepSheet,
     type LabMessage, type LawSheet, type LessonMessage, type LessonSheet, type Light, type MeasuredMessage, type PageMessage, type PathMessage,
-    type RobotSheet, type StateMessage, type Told,
+    type RobotSheet, type StateMessage, type Told, type WordsMessage,
 } from "./messages"
 
 const SECONDS = 60 // of samples that are kept
 const [TIME, LENGTH, ANGLE, FORCE] = [1e4, 1e5, 1e4, 1e2] // units per second, metre, radian, newton
 const HEAD = 2 // numbers of a row before those of the robots
 const PATIENCE = [0, 500, 1000, 2000] // [ms], until it connects again
-const NO_TICKET = 4001 // the ticket is not valid, or not any more
+const REFUSED = 4001 // the lab does not take the greeting
 const OTHER_VERSION = 1002
 const HANDED = 60 // [ms], at least, between two looks at the past
+const KEPT = ["labs", "teacher", "speaks", "sounds", "first_minute"]
+const SEES = 2000 // [ms] between messages that the page is drawn
 const SETTLES = 400 // [ms], until what the server shows counts again
 
 /** Where the numbers of a field are among those that a row has besides for each robot. */
@@ -115,10 +118,16 @@ export class RemoteEngine implements Engine {
     route = new SampledPath({ points: [[0, 0], [0, 0]], closed: false, right: [1, 0], up: [0, 1] })
     /** Whether the page hears from its lab. */
     connected = false
+    /** The number by which viser's websocket is known to be this page's. */
+    readonly page = Array.from(crypto.getRandomValues(new Uint8Array(16)), each => each.toString(16).padStart(2, "0")).join("")
+    /** The page's texts; null until they are known. */
+    words: WordsMessage | null = null
+    /** Why there is no lab yet; empty otherwise. */
+    waits = ""
     /** How many messages it has heard, and connections opened. */
     heard = 0
-    /** The last ticket that was not valid, when [ms], and how many in a row were not. */
-    refused = { ticket: "", at: 0, times: 0 }
+    /** How many connections in a row were refused. */
+    refused = 0
     /** Whether the lab is of another version. */
     outdated = false
     readonly files = new Files(message => this.send(message))
@@ -136,30 +145,52 @@ export class RemoteEngine implements Engine {
     private symbolLines: { symbol: string; lines: readonly Vector[][] } = { symbol: "", lines: [] }
     private sending = 0 // timer of an instant to be looked at
     private socket: WebSocket | null = null
-    private ticket = ""
+    private sees = false
     private tries = 0
+    private saw = 0 // [ms], when the page was drawn, as the lab knows
     private again = 0 // [ms], when it may be tried again
     private asked: { what: SheetName; resolve: (answer: Answer) => void }[] = [] // not answered yet
     private readonly news = new Set<(news: Compared | Told) => void>()
     private readonly listeners = new Set<(change: Change) => void>()
 
-    /** Whether there is something to show. */
-    get ready(): boolean { return this.lab !== null && this.samples.length > 0 }
+    /** `plain`: whether the page draws in software. */
+    constructor(private readonly dark: () => boolean, private readonly plain: boolean) {}
 
-    /** Connect with a ticket, unless it is in use or was refused; called repeatedly. */
-    open(ticket: string): void {
-        const now = performance.now()
-        if (!ticket || ticket === this.refused.ticket || (this.socket && ticket === this.ticket) || now < this.again) return
-        this.close()
-        this.ticket = ticket
+    /** Whether the websocket is open. */
+    get isOpen(): boolean { return this.socket?.readyState === WebSocket.OPEN }
+
+    /** Whether there is something to show. */
+    get ready(): boolean { return this.words !== null && this.lab !== null && this.samples.length > 0 }
+
+    /** Connect, unless it is connected, or was a moment ago; called repeatedly. */
+    open(): void {
+        if (this.socket || performance.now() < this.again) return
+        if (!this.sees) this.see()
         const socket = new WebSocket(location.href.replace(/^http/, "ws").replace(/[?#].*$/, ""), PROTOCOL)
         this.socket = socket
         socket.addEventListener("open", () => {
             this.heard++
-            socket.send(JSON.stringify({ is: "hello", ticket } satisfies PageMessage))
+            socket.send(JSON.stringify(this.greeting))
         })
         socket.addEventListener("message", ({ data }) => socket === this.socket && this.hear(JSON.parse(data as string) as LabMessage))
         socket.addEventListener("close", ({ code }) => socket === this.socket && this.closed(code))
+    }
+
+    private get greeting(): Hello {
+        const { page, plain } = this, [labs, teacher, speaks, sounds, first_minute] = KEPT.map(kept)
+        return { is: "hello", page, site: siteOf(location), dark: this.dark(), plain, labs, teacher, speaks, sounds, first_minute }
+    }
+
+    /** Tell the lab that the page is drawn: a lab that nobody sees rests. */
+    private see(): void {
+        this.sees = true
+        requestAnimationFrame(now => {
+            if (now > this.saw + SEES && this.connected) {
+                this.saw = now
+                this.send({ is: "seen" })
+            }
+            this.see()
+        })
     }
 
     close(): void {
@@ -236,7 +267,7 @@ export class RemoteEngine implements Engine {
 
     /** Send a message; it is lost while there is no connection. */
     send(message: Command | PageMessage): void {
-        if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message))
+        if (this.isOpen) this.socket!.send(JSON.stringify(message))
     }
 
     /** What the lab says now for a sheet of the page. */
@@ -285,13 +316,14 @@ export class RemoteEngine implements Engine {
         this.heard++
         if (!this.connected) {
             this.connected = true
-            this.tries = this.refused.times = 0
+            this.tries = this.refused = this.saw = 0
             if (this.symbol) this.send({ is: "light", symbol: this.symbol })
             if (this.plotted.length) this.send({ is: "plots", fields: [...this.plotted] })
             this.files.restart()
             for (const { what } of this.asked) this.send({ is: "ask", what })
             this.tell("state")
         }
+        this.waits = message.is === "wait" ? message.text : message.is === "store" ? this.waits : ""
         if (message.is === "frame") this.frame(message)
         else if (message.is === "path") {
             this.route = new SampledPath(message)
@@ -312,8 +344,13 @@ export class RemoteEngine implements Engine {
             this.tell("measured")
         } else if (message.is === "file" || message.is === "download" || message.is === "part") this.files.hear(message)
         else if (message.is === "compared" || message.is === "told") for (const listener of this.news) listener(message)
+        else if (message.is === "words") {
+            this.words = message
+            this.tell("words")
+        } else if (message.is === "lab") keepLab(message.code)
+        else if (message.is === "store") keep(message.key, message.value)
         else if (message.is === "refused") console.warn(`refused: ${message.why}`)
-        else if (message.is !== "alive" && message.is !== "form" && message.is !== "values") this.answered(message)
+        else if (message.is !== "alive" && message.is !== "wait" && message.is !== "form" && message.is !== "values") this.answered(message)
     }
 
     private answered(answer: Answer): void {
@@ -366,7 +403,7 @@ export class RemoteEngine implements Engine {
     private closed(code: number): void {
         this.socket = null
         this.connected = false
-        if (code === NO_TICKET) this.refused = { ticket: this.ticket, at: Date.now(), times: this.refused.times + 1 }
+        if (code === REFUSED) this.refused++
         if (code === OTHER_VERSION) this.outdated = true
         this.again = performance.now() + PATIENCE[Math.min(this.tries++, PATIENCE.length - 1)]!
         this.tell("state")

@@ -1,105 +1,84 @@
 // Keeps the page connected, and says in words what is going on until everything is there. A page has two websockets:
-// viser's, which a worker of viser's opens, and our own (channel.ts), for which viser's page brings a ticket. Whatever
-// ends one of them, it is opened again; a page stays away only if the lab refuses it for good.
+// our own (channel.ts), which opens the lab, and then viser's, which a worker of viser's opens, for the robots' picture.
+// Whatever ends one of them, it is opened again, and the other one goes on meanwhile; a page stays away only if the
+// lab refuses it for good.
 
 import { made, tell } from "../core/dom"
 import type { RemoteEngine } from "./channel"
+import { sayToViser } from "./kept"
 
-const OPENS = 40_000 // [ms] that viser's websocket may take to open; viser gives up after 5 s
+const OPENS = 40_000 // [ms] that a websocket may take to open; viser gives up after 5 s
 const VISERS = 5000 // [ms], viser's own limit
-const SOON = 100, EACH = 1000 // [ms] until a lost connection is opened again: at first, and then
-const LONGEST = 30_000 // [ms] between connections that end before the page is there
-const ASKS = 10_000 // [ms] between questions why viser's websocket does not open
-const RENEWS = 3000 // [ms] that a page whose ticket was refused waits for another one
-const REFUSALS = 4 // tickets in a row that are refused, after which the page stays away
+const EACH = 1000 // [ms] until a picture that was lost is asked for again
+const LONGEST = 30_000 // [ms] between attempts that end before the picture is there
+const ASKS = 10_000 // [ms] between questions why our websocket does not open
+const REFUSALS = 4 // greetings in a row that are refused, after which the page stays away
 const SLOW = 3000, MUCH = 0.75 // [ms] without a message, or with less than this share of the speed
 const SLEPT = 20_000, WAKES = 10_000 // [ms] between two looks of a page that slept; without a message after that
-const DEAD = 75_000, BUILDS = 150_000 // [ms] without a message, after which a connection counts as lost: with a page, and without
+const DEAD = 75_000, BUILDS = 150_000 // [ms] without a message, after which a connection counts as lost: with a lab, and without
+const MISSED = 10_000 // [ms] for which the lab may not know of a picture that is there
 const RELOADED = "onpath-reloaded" // when a page was loaded anew for another version of the lab
 const ORIGIN = "Onpath-Origin" // asks whether pages of an origin may connect; see request_filter.py
 
 /** What is going on; connect-… of the catalogues. */
-type Cause = "opening" | "silent" | "blocked" | "offline" | "lost" | "building" | "loading" | "back" | "slow" | Final
+type Cause = "opening" | "silent" | "blocked" | "offline" | "lost" | "building" | "waits" | "back" | "slow" | Picture | Final
+type Picture = "loading" | "picture_back" | "no_webgl"
 type Final = "forbidden" | "refused" | "version"
 /** What viser's worker tells. */
 interface Heard { type: string; versionMismatch?: boolean }
-const CALM: readonly string[] = ["opening", "building", "loading", "back"]
+const CALM: readonly string[] = ["opening", "building", "waits", "back", "loading", "picture_back", "no_webgl"]
 
-/** Of browser_words.js, which comes before this script. */
+/** Of browser_words.js and quality.js, which come before this script. */
 declare const ownWords: { text(): Record<string, string>; language(): string }
+declare const webgl: { works: boolean; plain?: boolean }
 
 export class Connection {
     private readonly box = made("p", "op-notice")
-    private connect = () => {} // has the worker open viser's websocket anew
-    private open = false
-    private tries = 0 // that have failed, in a row
-    private ended = 0 // connections in a row that ended before the page was there
-    private again = 0 // timer
-    private found: "silent" | "blocked" | null = null // why viser's websocket does not open
+    private wasThere = false
+    private found: "silent" | "blocked" | null = null // why our websocket does not open
     private final: Final | null = null
     private asked = Date.now()
-    private former = "" // the ticket before the last connection
-    private ticket = ""
-    private wasThere = false
     private quiet = 0 // [ms] of looks without a message
     private late = 0 // [ms] of looks at which the lab is too slow
     private slept = false
     private looked = Date.now()
     private heard = 0
+    private readonly picture = new PictureLink()
 
     constructor(private readonly engine: RemoteEngine) {
         this.box.setAttribute("role", "status")
-        this.followWorkers()
-        for (const event of ["online", "focus", "pageshow"]) addEventListener(event, () => this.open || this.retry(SOON))
-        document.addEventListener("readystatechange", () => this.look(false), { once: true }) // before viser's script begins
+        sayToViser(engine.page)
+        for (const event of ["online", "focus", "pageshow"]) addEventListener(event, () => this.picture.soon())
         document.addEventListener("visibilitychange", () => {
             this.quiet = 0
-            if (!this.open) this.retry(SOON)
+            this.picture.soon()
         })
     }
 
-    /** Note the ticket of viser's page, and connect our own websocket with it, unless it is an earlier one. */
-    page(ticket: string): void {
-        this.ticket = ticket
-        if (this.hasPage && !this.final) this.engine.open(ticket)
-    }
-
-    /** Whether viser's page has come since it was connected last. */
-    private get hasPage(): boolean { return this.ticket !== "" && this.ticket !== this.former }
-
-    /** Whether the lab itself says why there is no page: it is full, and the page waits for a place. */
-    private get waits(): boolean { return !this.hasPage && document.querySelector(".mantine-Modal-content") !== null }
-
-    /** Look what is missing, and say so; called repeatedly.
+    /** Open what is missing, and say what is; called repeatedly.
      * @param face whether our part of the page is shown */
     look(face: boolean): void {
-        const now = Date.now(), gap = now - this.looked, { engine } = this
+        const now = Date.now(), gap = now - this.looked, { engine, picture } = this
         this.looked = now
-        const isThere = this.open && this.hasPage && engine.connected && face
-        if (isThere) {
-            this.wasThere = true
-            this.tries = this.ended = 0
-        }
+        if (!this.final) engine.open()
+        const isThere = engine.connected && face
+        if (isThere) this.wasThere = true
         this.count(Math.min(gap, 1000), isThere)
         if (gap > SLEPT) [this.slept, this.quiet] = [true, 0]
         if (engine.outdated) this.reload()
-        if (this.open && !this.final) this.check(now)
-        if (!this.open && !this.final && now > this.asked + ASKS) {
+        if (engine.refused >= REFUSALS) this.end("refused")
+        if (!this.final && engine.isOpen && this.quiet > (this.slept ? WAKES : this.wasThere ? DEAD : BUILDS)) this.renew()
+        if (!this.final && !engine.isOpen && now > this.asked + ASKS) {
             this.asked = now
             void this.ask()
         }
+        if (engine.isOpen) this.found = null
+        if (engine.connected && engine.lab && !this.final) picture.look(now, engine.lab.scene)
+        if (picture.outdated) this.reload()
         this.say(this.cause(isThere))
-        document.documentElement.classList.toggle("op-lost", this.wasThere && !isThere)
-        document.documentElement.classList.toggle("op-back", this.wasThere && this.open && !this.hasPage)
-    }
-
-    /** Have the page made anew if its ticket is not valid, or nothing comes any more. */
-    private check(now: number): void {
-        const { refused } = this.engine
-        if (this.hasPage && refused.ticket === this.ticket && now > refused.at + RENEWS) {
-            if (refused.times < REFUSALS) this.renew()
-            else this.end("refused")
-        } else if (this.quiet > (this.slept ? WAKES : this.hasPage ? DEAD : BUILDS)) this.renew()
+        const { classList } = document.documentElement
+        classList.toggle("op-lost", this.wasThere && !isThere)
+        classList.toggle("op-no-picture", !picture.isThere)
     }
 
     /** Count how long nothing has come, or too slowly; a page that stands still itself counts as one look. */
@@ -109,97 +88,63 @@ export class Connection {
             this.heard = engine.heard
             this.quiet = 0
             this.slept = false
-        } else if (this.open && (this.slept || !this.waits) && document.visibilityState === "visible") this.quiet += gap
+        } else if (engine.isOpen && (this.slept || !engine.waits) && document.visibilityState === "visible") this.quiet += gap
         const lab = isThere && engine.state.running ? engine.lab! : null
         this.late = lab && lab.achieved < MUCH * lab.rate ? this.late + gap : 0
     }
 
     private cause(isThere: boolean): Cause | null {
+        const { engine, picture } = this
         if (this.final) return this.final
-        if (!this.open) {
+        if (!engine.isOpen) {
             if (!navigator.onLine && !/^(localhost|127\..*|\[::1\])$/.test(location.hostname)) return "offline"
             return this.found ?? (this.wasThere ? "lost" : "opening")
         }
-        if (isThere) return Math.max(this.quiet, this.late) > SLOW ? "slow" : null
-        if (this.waits) return null
-        if (this.wasThere) return "back"
-        return this.hasPage ? "loading" : "building"
+        if (engine.waits) return "waits"
+        if (!isThere) return this.wasThere ? "back" : "building"
+        if (Math.max(this.quiet, this.late) > SLOW) return "slow"
+        if (!webgl.works) return "no_webgl"
+        return picture.isThere ? null : picture.wasThere ? "picture_back" : "loading"
     }
 
     private say(cause: Cause | null): void {
         const { box } = this
         if (!cause) return box.remove()
-        tell(box, ownWords.text()[cause]!.replace("{origin}", location.origin))
+        const said = ownWords.text()
+        if (box.dataset["cause"] !== cause || box.lang !== ownWords.language() || cause === "waits") {
+            const text = cause === "waits" ? this.engine.waits : said[cause]!.replace("{origin}", location.origin)
+            if (cause === "no_webgl" && said["course_url"]) {
+                const link = made("a", "", said["course_link"]!)
+                link.href = said["course_url"]
+                box.replaceChildren(`${text} `, link)
+            } else tell(box, text)
+        }
         box.lang = ownWords.language()
         box.dataset["cause"] = cause
         box.classList.toggle("op-calm", CALM.includes(cause))
         if (!box.isConnected) document.body?.append(box)
     }
 
-    /** Follow the worker that holds viser's websocket, decide in viser's place when it tries again, and let it be patient:
-     * viser tries once a second, only in a window that has the focus, and each time gives up the attempt before. */
-    private followWorkers(): void {
-        const send = Worker.prototype.postMessage // oxlint-disable-line typescript/unbound-method
-        const follow = (worker: Worker) => {
-            this.connect = () => send.call(worker, { type: "retry" })
-            worker.addEventListener("message", ({ data }) => this.hear(data as Heard))
-        }
-        window.Worker = class extends Worker {
-            constructor(url: string | URL, options?: WorkerOptions) {
-                super(options?.type === "module" ? patient(url) : url, options)
-            }
-            override postMessage(message: unknown, how?: Transferable[] | StructuredSerializeOptions): void {
-                const { type } = (message ?? {}) as { type?: unknown }
-                if (type === "retry") return
-                if (type === "set_server") follow(this)
-                super.postMessage(message, how as Transferable[])
-            }
-        }
-    }
-
-    private hear({ type, versionMismatch }: Heard): void {
-        if (!this.hasPage) this.quiet = 0
-        if (type === "connected") {
-            clearTimeout(this.again)
-            this.open = true
-            this.found = null
-            this.former = this.ticket
-        } else if (type === "closed") {
-            if (this.open) this.asked = Date.now()
-            if (this.open && !this.hasPage) this.ended++
-            this.open = false
-            this.tries++
-            if (versionMismatch) this.reload()
-            this.retry(this.ended ? Math.min(EACH * 2 ** (this.ended - 1), LONGEST) : this.tries > 1 ? EACH : SOON)
-        }
-    }
-
-    /** Open viser's websocket soon. A whole class does not come at once. */
-    private retry(after: number): void {
-        clearTimeout(this.again)
-        if (!this.final) this.again = window.setTimeout(() => this.connect(), after * (0.8 + 0.4 * Math.random()))
-    }
-
-    /** Have viser's page made anew, with another ticket: it may have ended without our knowing. */
+    /** Open both websockets anew: they may have ended without our knowing. */
     private renew(): void {
         this.quiet = 0
-        this.slept = this.open = false
+        this.slept = false
         this.asked = Date.now()
-        this.former = this.ticket
-        this.connect()
+        this.engine.close()
+        this.engine.open()
+        this.picture.renew()
     }
 
-    /** Ask the server why viser's websocket does not open: a browser does not tell. */
+    /** Ask the server why our websocket does not open: a browser does not tell. */
     private async ask(): Promise<void> {
         const headers = { [ORIGIN]: location.origin }
         try {
             const { status } = await fetch(location.pathname, { headers, cache: "no-store", signal: AbortSignal.timeout(OPENS) })
-            if (status === 403 && !this.open) this.end("forbidden")
+            if (status === 403 && !this.engine.isOpen) this.end("forbidden")
             this.found = status < 500 ? "blocked" : "silent"
         } catch {
             this.found = "silent"
         }
-        if (this.open) this.found = null
     }
 
     /** Load the page of the lab's present version, but not again and again. */
@@ -215,9 +160,105 @@ export class Connection {
     }
 
     private end(final: Final): void {
-        clearTimeout(this.again)
         this.final = final
         this.engine.close()
+    }
+}
+
+/** The robots' picture: viser's websocket, and whether its page is there. It is asked for once the lab is there. */
+class PictureLink {
+    /** Whether viser's page is of another version than its server. */
+    outdated = false
+    /** Whether the picture has been there. */
+    wasThere = false
+    private connect: (() => void) | null = null // has viser's worker open its websocket
+    private state: "closed" | "opening" | "open" = "closed"
+    private client = "" // the number of the client whose page is in the document
+    private former = "" // that of the connection before
+    private scene = 0 // the client that the lab knows
+    private again = 0 // [ms], when it may be tried again
+    private ended = 0 // attempts in a row that ended before the picture was there
+    private missed = 0 // [ms], since when the lab has not known of it
+    private opened = 0 // [ms]
+
+    constructor() {
+        this.followWorkers()
+    }
+
+    /** Whether the lab draws it, in this page. */
+    get isThere(): boolean { return this.state === "open" && this.hasPage && this.client === String(this.scene) }
+
+    /** Whether viser's page has come since viser was connected last. */
+    private get hasPage(): boolean { return this.client !== "" && this.client !== this.former }
+
+    /** Open viser's websocket if it is missing.
+     * @param scene the client that the lab draws for */
+    look(now: number, scene: number): void {
+        this.scene = scene
+        this.client = document.querySelector<HTMLElement>("[data-page]")?.dataset["client"] ?? ""
+        if (this.isThere) {
+            this.wasThere = true
+            this.ended = 0
+        }
+        if (this.state === "closed" && this.connect && webgl.works && now > this.again) this.open(now)
+        if (this.state !== "open" || this.isThere) this.missed = now
+        const isLost = this.hasPage ? now > this.missed + MISSED : now > this.opened + BUILDS
+        if (this.state === "open" && isLost) this.renew()
+    }
+
+    /** Try again at once if it is missing. */
+    soon(): void {
+        this.again = 0
+    }
+
+    /** Have viser's page made anew. */
+    renew(): void {
+        if (this.state === "open") this.open(Date.now())
+    }
+
+    private open(now: number): void {
+        this.state = "opening"
+        this.former = this.client
+        this.opened = this.missed = now
+        this.connect!()
+    }
+
+    /** Follow the worker that holds viser's websocket, decide in viser's place when it connects, and let it be patient:
+     * viser tries once a second, only in a window that has the focus, and each time gives up the attempt before. */
+    private followWorkers(): void {
+        const send = Worker.prototype.postMessage // oxlint-disable-line typescript/unbound-method
+        const follow = (worker: Worker, begin: () => void) => {
+            this.state = "closed"
+            this.connect = () => {
+                this.connect = () => send.call(worker, { type: "retry" })
+                begin()
+            }
+            worker.addEventListener("message", ({ data }) => this.hear(data as Heard))
+        }
+        window.Worker = class extends Worker {
+            constructor(url: string | URL, options?: WorkerOptions) {
+                super(options?.type === "module" ? patient(url) : url, options)
+            }
+            override postMessage(message: unknown, how?: Transferable[] | StructuredSerializeOptions): void {
+                const { type } = (message ?? {}) as { type?: unknown }
+                if (type === "retry") return
+                const post = () => super.postMessage(message, how as Transferable[])
+                if (type === "set_server") follow(this, post)
+                else post()
+            }
+        }
+    }
+
+    private hear({ type, versionMismatch }: Heard): void {
+        if (type === "connected") {
+            this.state = "open"
+            this.opened = Date.now()
+        } else if (type === "closed") {
+            if (versionMismatch) this.outdated = true
+            const after = this.ended++ ? Math.min(EACH * 2 ** (this.ended - 2), LONGEST) : 0
+            this.state = "closed"
+            this.again = Date.now() + after * (0.8 + 0.4 * Math.random()) // a whole class does not come at once
+        }
     }
 }
 

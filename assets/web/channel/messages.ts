@@ -65,8 +65,35 @@ export interface Action {
 /** The first message of a page. */
 export interface Hello {
     is: "hello"
-    /** that the page was given. */
-    ticket: string
+    /** a random number of its own, by which viser's websocket is known to be the same page's. */
+    page: string
+    /** the codes of the browser's labs, newest first, separated by commas. */
+    labs?: string
+    /** the pass of a teacher of the class at the page's address. */
+    teacher?: string
+    /** where the browser has opened the site. */
+    site?: string
+    /** whether the browser asks for dark pages. */
+    dark?: boolean
+    /** whether it draws in software, so that the scene must be quickly drawn. */
+    plain?: boolean
+    /** see `Store`. */
+    speaks?: string
+    /** see `Store`. */
+    sounds?: string
+    /** see `Store`. */
+    first_minute?: string
+}
+
+/** The page is drawn: comes every two seconds. A lab that nobody sees rests. */
+export interface Seen {
+    is: "seen"
+}
+
+/** The browser now asks for dark pages, or for light ones. */
+export interface Dark {
+    is: "dark"
+    on: boolean
 }
 
 /** The canvas has another size: the camera is then fitted to it. */
@@ -240,6 +267,8 @@ export type Command =
 /** What a page sends besides commands. */
 export type PageMessage =
     | Hello
+    | Seen
+    | Dark
     | Resized
     | Skip
     | Light
@@ -254,6 +283,35 @@ export type PageMessage =
     | AskSummary
     | EnterLab
     | CompareLaws
+
+/** The code of the page's lab, which its browser keeps before those of its other labs. */
+export interface LabCode {
+    is: "lab"
+    code: string
+}
+
+/** The browser is to keep a value for `Hello`, or to forget it if it is empty. */
+export interface Store {
+    is: "store"
+    /** "teacher": a pass, of the class at the page's address; "speaks" and "sounds": "yes" or "no"; "first_minute": how many of
+     * the invitations it has shown. */
+    key: "first_minute" | "sounds" | "speaks" | "teacher"
+    value: string
+}
+
+/** The page has no lab yet: the server is full. */
+export interface Wait {
+    is: "wait"
+    /** says so to the user. */
+    text: string
+}
+
+/** The page's texts by key; when its language changes. */
+export interface WordsMessage {
+    is: "words"
+    language: string
+    words: Record<string, string>
+}
 
 /** The samples since the last frame; 20 times a second while anything in it changes, less often under load or if the page
  * reads slowly.
@@ -392,6 +450,8 @@ export interface StateMessage {
     laws: string[]
     /** the share code that was made last; may be empty. */
     shared: string
+    /** number of viser's client for which the lab draws the robots; 0 without one. */
+    scene: number
 }
 
 /** The open step of a lesson, or its end; when another one is open, or anything is noted in it. A teacher's page has none.
@@ -710,6 +770,10 @@ export type Changes<Message extends { is: string }> = Pick<Message, "is"> & Part
 
 /** What the server sends. */
 export type LabMessage =
+    | LabCode
+    | Store
+    | Wait
+    | WordsMessage
     | FrameMessage
     | PathMessage
     | LitMessage

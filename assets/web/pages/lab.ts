@@ -4,6 +4,7 @@
 import { made, tell } from "../core/dom"
 import { shown } from "../core/engine"
 import { retone } from "../core/ink"
+import { keptLook } from "../core/look"
 import { said, significant, written, type Texts } from "../core/words"
 import { RemoteEngine } from "../channel/channel"
 import { Connection } from "../channel/connection"
@@ -19,6 +20,7 @@ import { Voice } from "../parts/voice"
 import { Shell } from "./shell"
 
 const LOOK = 250 // [ms] between looks for what viser has put into the page
+const PANEL = 330 // [px] that viser's panel will take, beside the robots
 const RATES = [0.125, 0.25, 0.5, 1, 2, 4]
 const RESTS = 300 // [ms] for which the canvas keeps its size, until the lab is told of it
 const NUMBERS = 100 // [ms] between changes of the large numbers
@@ -115,8 +117,8 @@ class Face {
     /** Follow viser's canvas, which changes its size, or is replaced. Not to be called by a ResizeObserver, or a lens misses its own new size. */
     place(): void {
         const canvas = document.querySelector<HTMLElement>("canvas[data-engine]")
-        const { left, top, width, height } = canvas?.getBoundingClientRect() ?? new DOMRect()
-        if (width !== this.width || height !== this.height) {
+        const { left, top, width, height } = canvas?.getBoundingClientRect() ?? this.room()
+        if (canvas && (width !== this.width || height !== this.height)) {
             clearTimeout(this.resizing)
             this.resizing = window.setTimeout(() => this.engine.send({ is: "resized" }), RESTS)
         }
@@ -130,6 +132,12 @@ class Face {
         this.voice.place(left, top, width, height)
         this.makeRoom(this.column.open ? 0 : left)
         this.stage.place(left, top, width, height)
+    }
+
+    /** Where the robots' picture will be. */
+    private room(): DOMRect {
+        const { left, top, width, height } = document.querySelector("#root")?.getBoundingClientRect() ?? new DOMRect()
+        return new DOMRect(left, top, Math.max(width - (UPRIGHT.matches ? 0 : PANEL), 0), height)
     }
 
     /** A panel on the left is as high as the window; the strip begins beside it. */
@@ -204,35 +212,70 @@ function sliderOf(gain: string): Element | null {
     return label?.closest(".mantine-Flex-root") ?? null
 }
 
-/** Show our part of the page as soon as viser's has come; until then, a cover hides that. */
+/** Of quality.js, which comes before this script. */
+declare const webgl: { works: boolean; plain?: boolean }
+
+/** Show our part of the page as soon as the lab has told of itself, whether or not viser's has come. */
 export function showLab(): void {
-    const engine = new RemoteEngine(), root = document.documentElement, connection = new Connection(engine)
+    const root = document.documentElement
+    const scheme = new Scheme()
+    const engine = new RemoteEngine(() => scheme.dark, webgl.plain ?? false), connection = new Connection(engine)
     let face: Face | null = null
-    let words = "", reopen = "", calmed = !matchMedia("(prefers-reduced-motion: reduce)").matches
+    let words: Texts | null = null, reopen = "", calmed = !matchMedia("(prefers-reduced-motion: reduce)").matches
     root.classList.add("op-loading")
-    let source: DOMStringMap | undefined
     const follow = () => {
-        source = document.querySelector<HTMLElement>("[data-page]")?.dataset ?? source
-        if (!source) return // the page is being built; later, its panel may be folded
-        root.classList.remove("op-loading")
-        root.lang = source["language"]!
-        connection.page(source["ticket"] ?? "")
-        if (source["parts"] !== words) {
-            reopen = face?.end() ?? ""
-            face = null
-            words = source["parts"]!
+        scheme.look(engine)
+        if (engine.ready && document.body) {
+            if (engine.words !== words) {
+                reopen = face?.end() ?? ""
+                words = engine.words!
+                root.lang = engine.words!.language
+                face = new Face(engine, words, reopen)
+                root.classList.remove("op-loading")
+            }
+            face!.place()
+            if (!calmed) {
+                calmed = true // users who ask for less motion begin with a lab at rest
+                engine.act({ do: "run", on: false })
+            }
         }
-        if (!engine.ready) return
-        face ??= new Face(engine, { words: JSON.parse(words) as Record<string, string> }, reopen)
-        face.place()
-        if (calmed) return
-        calmed = true // users who ask for less motion begin with a lab at rest
-        engine.act({ do: "run", on: false })
-    }
-    setInterval(() => {
-        follow()
         connection.look(face !== null)
-    }, LOOK)
-    new MutationObserver(retone).observe(root, { attributeFilter: ["data-mantine-color-scheme"] })
+    }
+    setInterval(follow, LOOK)
+    engine.on(change => { if (change === "words" || !face) follow() })
+    follow()
     Object.assign(window, { onpathLab: engine }) // for tests
+}
+
+/** Whether the page is dark, as the system or its user wants. Our part is at once; the lab is told for the robots'
+ * picture, whose page is made anew, as soon as nothing is typed or dragged there. */
+class Scheme {
+    dark = false
+    private told = false
+    private pressed = false
+    private readonly asked = matchMedia("(prefers-color-scheme: dark)")
+
+    constructor() {
+        this.follow()
+        this.told = this.dark
+        this.asked.addEventListener("change", () => this.follow())
+        addEventListener("op-look", () => this.follow())
+        for (const [name, down] of [["pointerdown", true], ["pointerup", false], ["pointercancel", false]] as const)
+            addEventListener(name, () => { this.pressed = down }, { capture: true })
+    }
+
+    private follow(): void {
+        if (matchMedia("print").matches) return // paper is light
+        const look = keptLook()
+        this.dark = look === "system" ? this.asked.matches : look === "dark"
+        document.documentElement.classList.toggle("op-dark", this.dark)
+        retone()
+    }
+
+    look(engine: RemoteEngine): void {
+        if (this.dark === this.told || !engine.connected || this.pressed) return
+        if (document.activeElement?.matches("#root :is(input:not([type=checkbox]), textarea)")) return
+        this.told = this.dark
+        engine.send({ is: "dark", on: this.dark })
+    }
 }

@@ -29,7 +29,7 @@ from onpath.app.lab.lab import Command
 from onpath.assets import asset_path
 
 SENT = [
-    '{"is": "hello", "ticket": "x"}',
+    '{"is": "hello", "page": "00112233445566778899aabbccddeeff", "dark": true}',
     '{"is": "resized"}',
     '{"is": "skip"}',
     '{"is": "make", "file": "table"}',

@@ -47,7 +47,7 @@ def test_a_student_reads_it_on_the_first_page_only(tmp_path: Path) -> None:
         "127.0.0.1", 0, LoopCache(), ServerOptions(course=read_course([tmp_path])[0])
     )
     try:
-        with Student(f"ws://127.0.0.1:{server.server.get_port()}", channel=True) as student:
+        with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
             student.open()
             student.read(lambda: student.code)
             lab = wait_for(lambda: server.registry.find(student.code)).scheduled.lab

@@ -21,6 +21,7 @@ from onpath.app.page.panels import dialog
 from onpath.app.page.panels.keys import Keys
 from onpath.app.server.lab_server import LabServer
 from onpath.lessons.words import ENGLISH, Words
+from tests.support.own_socket import feeds
 from tests.support.student import Student
 from tests.support.waiting import wait_for
 
@@ -96,7 +97,7 @@ def wait_for_queue(server: LabServer, count: int) -> None:
 
 
 def wait_for_views(server: LabServer, count: int) -> None:
-    wait_for(lambda: len(server._feeds) == count, 60)
+    wait_for(lambda: len(feeds(server)) == count, 60)
 
 
 class Comer(threading.Thread):
@@ -175,7 +176,7 @@ def test_a_file_that_is_being_made_does_not_delay_the_page(
     with comer.student:
         comer.run()
         wait_for_views(server, 1)
-        (feed,), (lab,) = server._feeds.values(), server.thread.labs
+        (feed,), (lab,) = feeds(server).values(), server.thread.labs
         wait_for(lambda: lab.simulation.time > 0, 60)  # its loops are compiled first
         feed.page.exporter.csv()
         assert begun.wait(60)

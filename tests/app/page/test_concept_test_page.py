@@ -32,7 +32,7 @@ def server() -> Iterator[LabServer]:
 
 @pytest.fixture
 def student(server: LabServer) -> Iterator[Student]:
-    with Student(f"ws://127.0.0.1:{server.server.get_port()}", channel=True) as student:
+    with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
         student.open()
         student.read(lambda: student.code)
         yield student

@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
-from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -16,7 +13,6 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.commands.command_codec import command_from
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
-from onpath.app.page import first_minute
 from onpath.app.page.first_minute import INVITATIONS, PAUSE, READ, FirstMinute
 from onpath.app.page.narration import Narration
 from onpath.app.scene.captions import Captions
@@ -29,16 +25,9 @@ from tests.support.lab import do, loop_cache, new_lab, run
 class Guest:
     """A browser that keeps something, and what it is shown."""
 
-    def __init__(self, kept: str, patch: pytest.MonkeyPatch) -> None:
+    def __init__(self, kept: str) -> None:
         self.kept = kept
-        storage = SimpleNamespace(set_item=lambda key, value: setattr(self, "kept", value))
-
-        def ask(client: Any, key: str, answer: Callable[[str], None]) -> None:
-            answer(self.kept)
-
-        patch.setattr(first_minute, "ask_item", ask)
-        client: Any = SimpleNamespace(local_storage=storage)
-        self.part = FirstMinute(client, "01")
+        self.part = FirstMinute("01", kept, lambda value: setattr(self, "kept", value))
 
     def after(self, lab: Lab, seconds: float) -> str:
         """Which invitation is shown when the lab has run for some seconds; empty: none."""
@@ -49,16 +38,9 @@ class Guest:
         return "" if shown is None else shown.name
 
 
-@pytest.fixture
-def guest(monkeypatch: pytest.MonkeyPatch) -> Callable[[str], Guest]:
-    return lambda kept: Guest(kept, monkeypatch)
-
-
-def test_a_newcomer_is_led_from_a_hold_to_a_pull_to_a_bent_path(
-    guest: Callable[[str], Guest],
-) -> None:
+def test_a_newcomer_is_led_from_a_hold_to_a_pull_to_a_bent_path() -> None:
     course = built_in_course()
-    lab, new = Lab(loop_cache(), course=course), guest("")
+    lab, new = Lab(loop_cache(), course=course), Guest("")
     assert new.after(lab, 0.2) == "hold"
     do(lab, c.Hold(True))
     assert new.after(lab, 0.5) == ""
@@ -80,30 +62,26 @@ def test_a_newcomer_is_led_from_a_hold_to_a_pull_to_a_bent_path(
 
 
 @pytest.mark.parametrize("kept", ["0", "", "6", "-1", "x" * 2000, "١", "2"])
-def test_the_stored_number_of_invitations_is_used_if_it_is_valid(
-    kept: str, guest: Callable[[str], Guest]
-) -> None:
+def test_the_stored_number_of_invitations_is_used_if_it_is_valid(kept: str) -> None:
     expected = "pull" if kept == "2" else "hold"
-    assert guest(kept).after(new_lab(), 4.0) == expected
+    assert Guest(kept).after(new_lab(), 4.0) == expected
 
 
-def test_a_user_who_has_seen_all_invitations_is_shown_none(guest: Callable[[str], Guest]) -> None:
-    assert guest(str(len(INVITATIONS))).after(new_lab(), 4.0) == ""
+def test_a_user_who_has_seen_all_invitations_is_shown_none() -> None:
+    assert Guest(str(len(INVITATIONS))).after(new_lab(), 4.0) == ""
 
 
-def test_a_reset_does_not_stop_the_invitations(guest: Callable[[str], Guest]) -> None:
-    lab, again = new_lab(3.0), guest("2")
+def test_a_reset_does_not_stop_the_invitations() -> None:
+    lab, again = new_lab(3.0), Guest("2")
     assert again.after(lab, 1.0) == ""
     do(lab, c.Reset())
     assert again.after(lab, 4.0) == "pull"
 
 
-def test_the_button_of_an_invitation_has_a_command_that_the_lab_takes(
-    guest: Callable[[str], Guest],
-) -> None:
+def test_the_button_of_an_invitation_has_a_command_that_the_lab_takes() -> None:
     course = built_in_course()
     for number, invitation in enumerate(INVITATIONS):
-        new = guest(str(number))
+        new = Guest(str(number))
         new.part._lesson = next(iter(course.lessons))
         lab = new_lab(0.0)
         do(lab, c.Hold(invitation.name == "let_go"))
@@ -151,15 +129,15 @@ def distances(lab: Lab, seconds: float) -> np.ndarray:
     return np.array(found)
 
 
-def test_a_newcomer_reads_nothing_of_integral_action(guest: Callable[[str], Guest]) -> None:
+def test_a_newcomer_reads_nothing_of_integral_action() -> None:
     lab, captions = new_lab(1.0), Captions(ENGLISH)
     do(lab, c.Grab(RIGHT, lab.simulation.robot.frame.lift(np.array([0.1, 0.0]))))
     run(lab, 3.0)
     snapshot = take_page_snapshot(lab, 1.0)
     assert "integral" in captions.follow(snapshot)[RIGHT]
-    narration = Narration(ENGLISH, {"speaks": False, "sounds": False}, captions)
+    quiet = {"speaks": False, "sounds": False}
     for kept in range(len(INVITATIONS) + 1):
-        narration.first_minute = guest(str(kept)).part
+        narration = Narration(ENGLISH, quiet, captions, Guest(str(kept)).part)
         narration.follow(snapshot)
         is_over = kept == len(INVITATIONS)
         assert ("integral" in captions.follow(snapshot)[RIGHT]) == is_over

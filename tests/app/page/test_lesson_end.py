@@ -48,7 +48,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
     course, problems = read_course([folder])
     assert problems == []
     server = LabServer("127.0.0.1", 0, LoopCache(), ServerOptions(course=course))
-    with Student(f"ws://127.0.0.1:{server.server.get_port()}", channel=True) as student:
+    with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
         student.open()
         student.read(lambda: student.code)
         found = wait_for(lambda: server.registry.find(student.code), PATIENCE)

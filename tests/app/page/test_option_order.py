@@ -72,7 +72,7 @@ def chosen(lab: Lab) -> int | None:
 def test_a_letter_means_the_option_that_stands_beside_it(
     server: LabServer, course: Course, step: int
 ) -> None:
-    with Student(f"ws://127.0.0.1:{server.server.get_port()}", channel=True) as student:
+    with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
         student.open()
         student.read(lambda: student.code)
         entry = wait_for(lambda: server.registry.find(student.code))

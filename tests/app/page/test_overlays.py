@@ -331,7 +331,7 @@ def lessons() -> Iterator[LabServer]:
 
 @pytest.mark.thorough
 def test_a_projector_shows_it_in_a_lesson_too(lessons: LabServer) -> None:
-    with Student(f"ws://127.0.0.1:{lessons.server.get_port()}", channel=True) as student:
+    with Student(f"ws://127.0.0.1:{lessons.server.get_port()}") as student:
         student.open()
         student.read(lambda: student.code)
         lab = wait_for(lambda: lessons.registry.find(student.code), 30.0).scheduled.lab

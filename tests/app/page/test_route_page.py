@@ -24,7 +24,7 @@ wait_for = partial(waiting.wait_for, seconds=30.0)  # only ends a test that woul
 def test_a_student_follows_a_route_from_the_list_to_its_end(tmp_path: Path) -> None:
     server = LabServer("127.0.0.1", 0, LoopCache(), ServerOptions(course=written(tmp_path)))
     try:
-        with Student(f"ws://127.0.0.1:{server.server.get_port()}", channel=True) as student:
+        with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
             student.open()
             student.read(lambda: student.code)
             lab = wait_for(lambda: server.registry.find(student.code)).scheduled.lab

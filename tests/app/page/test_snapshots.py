@@ -16,6 +16,7 @@ import viser
 from viser import _gui_api, _gui_handles
 from viser.infra import Message
 
+from onpath.app.common.work_thread import WorkThread
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.loops.loop_cache import LoopCache
@@ -24,7 +25,7 @@ from onpath.app.lab.snapshots.snapshot import Motion
 from onpath.app.lab.snapshots.take_snapshot import take_motion, take_page_snapshot
 from onpath.app.page.page import Page
 from onpath.app.page.page_context import ClassSeat, PageContext
-from onpath.app.page.rebuild_thread import RebuildThread
+from onpath.app.page.page_text import PageText
 from onpath.app.server.lab_server import LabServer
 from onpath.app.viser_adapter.frame_channel import FrameChannel
 from onpath.app.viser_adapter.frame_packing import GroupUpdate
@@ -34,6 +35,7 @@ from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
 from tests.support import waiting
 from tests.support.built_in import built_in_course
 from tests.support.lab import FOLLOWER, FRAME, loop_cache
+from tests.support.own_socket import feeds
 from tests.support.student import Student
 
 wait_for = partial(waiting.wait_for, seconds=30.0)  # only ends a test that would hang
@@ -45,9 +47,9 @@ def client() -> Iterator[viser.ClientHandle]:
     server = LabServer("127.0.0.1", 0, LoopCache())
     with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
         student.open()
-        student.read(lambda: student.has_widget("Path") and server._feeds)
+        student.read(lambda: student.has_widget("Path") and feeds(server))
         server.thread.stop()
-        (number,) = wait_for(lambda: list(server._feeds))
+        (number,) = wait_for(lambda: list(feeds(server)))
         yield server.server.get_clients()[number]
     server.stop()
 
@@ -88,12 +90,14 @@ class Drawing:
         self._client.gui.reset()
         with self._patch.context() as patch:
             patch.setattr(FrameChannel, "_take", take)
-            patch.setattr(RebuildThread, "submit", lambda _, work: work())
+            patch.setattr(WorkThread, "submit", lambda _, work: work())
             patch.setattr(_gui_api, "_global_order_counter", 0)
             for module in (_gui_api, _gui_handles):
                 patch.setattr(module, "_make_uuid", lambda: f"widget {next(numbers)}")
             seat = ClassSeat(lambda *_: "", lambda: None, lambda _: "")
-            context = PageContext("k" * 12, self.posted.append, self._course, 365, print, seat)
+            code, text = "k" * 12, PageText(self._course, "k" * 12)
+            post = self.posted.append
+            context = PageContext(code, post, self._course, 365, print, text, seat)
             first, *others = snapshots
             assert isinstance(first, PageSnapshot)
             page = Page(self._client, first, context)

@@ -21,6 +21,7 @@ from onpath.app.simulation.slow_updates import INTERVALS
 from onpath.models.systems.five_bar_robot import RIGID_FIVE_BAR
 from tests.support import waiting
 from tests.support.drags import play
+from tests.support.own_socket import feeds
 from tests.support.student import Student
 
 pytestmark = pytest.mark.thorough
@@ -34,8 +35,8 @@ class Page:
     """One tab of a real lab whose frames are counted out here; notes what is told of the line."""
 
     def __init__(self, lab: LabServer) -> None:
-        (self.number,) = wait_for(lambda: list(lab._feeds))
-        self.view: Any = lab._feeds[self.number]
+        (self.number,) = wait_for(lambda: list(feeds(lab)))
+        self.view: Any = feeds(lab)[self.number]
         self.client = lab.server.get_clients()[self.number]
         self.lab = next(iter(lab.registry._entries.values())).scheduled.lab
         lab.thread.stop()
@@ -92,7 +93,7 @@ def page() -> Iterator[Page]:
     lab = LabServer("127.0.0.1", 0, LoopCache())
     with Student(f"ws://127.0.0.1:{lab.server.get_port()}") as student:
         student.open()
-        student.read(lambda: student.has_widget("Path") and lab._feeds)
+        student.read(lambda: student.has_widget("Path") and feeds(lab))
         yield Page(lab)
     lab.stop()
 

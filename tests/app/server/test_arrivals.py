@@ -14,12 +14,13 @@ from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Subprotocol
 
 from onpath.app.lab.loops.loop_cache import LoopCache
-from onpath.app.server.arrivals import MOST_EACH, Arrival, Arrivals, Kept
+from onpath.app.server.arrivals import MOST_EACH, PAGE_KEY, Arrivals
 from onpath.app.server.lab_server import LabServer
 from onpath.app.viser_adapter.secure_server import Limits, make_server
 from tests.bench.client_protocol import CAMERA, SUBPROTOCOL, answer, packed, unpacked
 from tests.bench.raw_socket import is_closed, knock, say
 from tests.support import waiting
+from tests.support.own_socket import feeds
 from tests.support.student import Student
 
 WAIT = 30.0  # [s]; only ends a test that would hang
@@ -64,7 +65,7 @@ def test_silent_tabs_hold_no_thread_no_lab_and_no_place(lab: LabServer) -> None:
         newcomer.read(lambda: newcomer.has_widget("Path"))
         insider.set("Lessons", True)
         insider.read(lambda: insider.has_widget("Open lesson 1"))
-        wait_for(lambda: len(lab._feeds) == 2)
+        wait_for(lambda: len(feeds(lab)) == 2)
         assert len(lab.registry) == 2
         assert [is_closed(tab) for tab in tabs] == [True] * MOST_EACH + [False] * MOST_EACH
 
@@ -91,27 +92,23 @@ def test_a_browser_that_opens_a_lab_by_its_code_remembers_its_own_too(lab: LabSe
             student.read(lambda student=student: student.code and student.has_widget("Path"))
         codes = [other.code, one.code]
         other.close()
-        wait_for(lambda: len(lab._feeds) == 1)  # the lab is free then
-        (client,) = lab.server.get_clients().values()
-        lab._enter(client, codes[0])
+        wait_for(lambda: len(lab.visits) == 1 and len(lab.registry.held()) == 1)  # it is free
+        (visit,) = lab.visits
+        lab._enter(visit, codes[0])
         one.read(lambda: one.code == codes[0])
         assert ",".join(codes) in one.kept.values()
 
 
-# The questions alone, without a server.
+# The question alone, without a lab.
 
 
 class Inn:
-    """A server that asks two things."""
+    """A server that asks for the page."""
 
     def __init__(self) -> None:
         self.server = make_server(port=0, limits=Limits(farewell=0.1))
-        self.let_in: list[Kept] = []
-        keys = {"a": True, "b": False}
-        self.arrivals = Arrivals(self.server, keys, self._enter, 5, 3)
-
-    def _enter(self, arrival: Arrival) -> None:
-        self.let_in.append(arrival.kept)
+        self.let_in: list[str] = []
+        self.arrivals = Arrivals(self.server, lambda _, page: self.let_in.append(page), 5, 3)
 
     def visit(self) -> ClientConnection:
         """A browser that has answered nothing yet."""
@@ -127,16 +124,14 @@ class Inn:
         assert all_threads_are_free(self.server)
 
 
-def answers_of(client: ClientConnection) -> dict[str, bytes]:
-    """The messages with which a browser would answer, by key; they are not sent."""
-    answers: dict[str, bytes] = {}
-    while len(answers) < 2:
+def answer_of(client: ClientConnection) -> bytes:
+    """The message with which a browser would answer; it is not sent."""
+    while True:
         raw = client.recv(WAIT)
         assert isinstance(raw, bytes)
         for message in unpacked(raw):
-            if reply := answer(message, {"a": "apple"}):
-                answers[message["key"]] = reply
-    return answers
+            if reply := answer(message, {PAGE_KEY: "a page"}):
+                return reply
 
 
 @pytest.fixture
@@ -146,21 +141,19 @@ def inn() -> Iterator[Inn]:
     inn.server.stop()
 
 
-def test_a_client_that_has_answered_everything_enters_once(inn: Inn) -> None:
+def test_a_client_that_has_answered_enters_once(inn: Inn) -> None:
     client = inn.visit()
     with client:
-        answers = answers_of(client)
+        reply = answer_of(client)
         response = "LocalStorageGetItemResponseMessage"
         client.send(packed(response, request_uuid="made up", value="x", error=None))
-        client.send(answers["b"])
-        client.send(answers["b"])
         inn.settled(client)
         assert not inn.let_in
-        client.send(answers["a"])
+        client.send(reply)
         wait_for(lambda: inn.let_in)
-        client.send(answers["a"])
+        client.send(reply)
         inn.settled(client)
-        assert inn.let_in == [{"a": "apple", "b": ""}]
+        assert inn.let_in == ["a page"]
         assert not len(inn.arrivals._silent)
 
 

@@ -35,6 +35,7 @@ from websockets.typing import Subprotocol
 
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.page.build_queue import in_turn
+from onpath.app.server.arrivals import PAGE_KEY
 from onpath.app.server.lab_server import LabServer
 from onpath.app.server.server_options import ServerOptions
 from onpath.app.simulation.frame_length import FRAME
@@ -42,11 +43,12 @@ from onpath.app.viser_adapter.frame_channel import MOST_UNSENT
 from onpath.app.viser_adapter.secure_server import Limits, make_server
 from tests.bench.client_protocol import CAMERA, SUBPROTOCOL, answer, packed, unpacked
 from tests.bench.hostile_messages import BROKEN, GARBAGE, VERSIONS
-from tests.bench.raw_socket import WAIT, answer_questions, frames, is_closed, knock, say
+from tests.bench.raw_socket import WAIT, answer_question, frames, is_closed, knock, say
 from tests.bench.simulated_browser import Browser
 from tests.support import waiting
 from tests.support.checkout import ROOT
 from tests.support.lab import assert_sound
+from tests.support.own_socket import OwnSocket, feeds, visit_of
 
 pytestmark = pytest.mark.thorough
 
@@ -60,8 +62,8 @@ class Guest:
     """A tab that answers as viser's page does, reads everything, and sends what a test sends."""
 
     def __init__(self, server: LabServer, inside: bool = True) -> None:
-        self.told: list[dict[str, Any]] = []
-        before = set(server._feeds)
+        before = set(feeds(server))
+        self.own = OwnSocket(f"ws://127.0.0.1:{server.server.get_port()}")
         self.socket = websockets.sync.client.connect(
             f"ws://127.0.0.1:{server.server.get_port()}",
             subprotocols=[Subprotocol(SUBPROTOCOL)],
@@ -73,10 +75,16 @@ class Guest:
         self.send("ViewerCameraMessage", **CAMERA)
         if not inside:
             return
-        (self.id,) = wait_for(lambda: set(server._feeds) - before)
+        (self.id,) = wait_for(lambda: set(feeds(server)) - before)
         self.client = server.server.get_clients()[self.id]
-        entries = server.registry._entries.values()
-        self.scheduled = next(entry.scheduled for entry in entries if entry.client == self.id)
+        self.visit, entries = visit_of(server, self.id), server.registry._entries.values()
+        number = self.visit.number
+        self.scheduled = next(entry.scheduled for entry in entries if entry.client == number)
+
+    def close(self) -> None:
+        """Leave the lab."""
+        self.socket.close()
+        self.own.close()
 
     def send(self, kind: str, **fields: Any) -> None:
         self.socket.send(packed(kind, **fields))
@@ -95,8 +103,8 @@ class Guest:
 
     @property
     def let_in(self) -> bool:
-        """Whether a notice has been taken away again."""
-        return any(message["type"] == "GuiCloseModalMessage" for message in self.told)
+        """Whether it has a lab."""
+        return "lab" in self.own.kinds()
 
     @property
     def handles(self) -> dict[str, Any]:
@@ -114,9 +122,7 @@ class Guest:
             for raw in self.socket:
                 assert isinstance(raw, bytes)
                 for message in unpacked(raw):
-                    if "Modal" in message["type"] or "Markdown" in message["type"]:
-                        self.told.append(message)
-                    if reply := answer(message):
+                    if reply := answer(message, {PAGE_KEY: self.own.page}):
                         self.socket.send(reply)
 
 
@@ -194,8 +200,8 @@ def witness(server: LabServer) -> Iterator[Witness]:
 def attacker(server: LabServer) -> Iterator[Guest]:
     guest = Guest(server)
     yield guest
-    guest.socket.close()
-    wait_for(lambda: guest.id not in server._feeds)
+    guest.close()
+    wait_for(lambda: guest.id not in feeds(server))
 
 
 @pytest.fixture
@@ -238,7 +244,7 @@ def test_no_widget_of_the_lab_takes_an_impossible_value(
             assert (low is None or low <= value) and (high is None or value <= high)
         elif getattr(handle, "options", None):
             assert value in handle.options
-    assert attacker.id in server._feeds  # it may go on
+    assert attacker.id in feeds(server)  # it may go on
 
 
 def test_widgets_of_another_client_cannot_be_changed(
@@ -369,7 +375,7 @@ def memory() -> int:
 def test_a_client_that_reads_nothing_costs_a_bounded_amount(
     server: LabServer, witness: Witness, quiet_log: None
 ) -> None:
-    before, sockets = set(server._feeds), server.server._websock_server._live_connections
+    before, sockets = set(feeds(server)), server.server._websock_server._live_connections
     known = set(sockets.values())
     raw = socket.socket()
     raw.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
@@ -385,9 +391,10 @@ def test_a_client_that_reads_nothing_costs_a_bounded_amount(
     connection.transport.get_extra_info("socket").setsockopt(
         socket.SOL_SOCKET, socket.SO_SNDBUF, 4096
     )
+    own = OwnSocket(f"ws://127.0.0.1:{server.server.get_port()}")
     silent.send(packed("ViewerCameraMessage", **CAMERA))
-    answer_questions(silent)
-    (deaf,) = wait_for(lambda: set(server._feeds) - before)
+    answer_question(silent, own.page)
+    (deaf,) = wait_for(lambda: set(feeds(server)) - before)
     client = server.server.get_clients()[deaf]
     buffer = client._websock_connection._state.message_buffer
     wait_for(lambda: connection.transport.get_write_buffer_size() > 0)
@@ -399,7 +406,8 @@ def test_a_client_that_reads_nothing_costs_a_bounded_amount(
             witness.watch(3)
     assert max(waiting[-10:]) <= max(waiting[:20]) + 20  # what is late is merged
     raw.close()
-    wait_for(lambda: deaf not in server._feeds)
+    wait_for(lambda: deaf not in feeds(server))
+    own.close()
 
 
 def test_a_client_that_answers_nothing_is_closed() -> None:
@@ -439,7 +447,7 @@ def test_800_connections_in_a_row(server: LabServer, witness: Witness, quiet_log
                 raw.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
             raw.close()
     assert threading.active_count() < threads + 50
-    wait_for(lambda: _let_in(server)).socket.close()
+    wait_for(lambda: _let_in(server)).close()
     wait_for(lambda: len(server.thread.labs) <= labs + 3)
     wait_for(lambda: len(server.server._websock_server._live_connections) <= 2)
     assert memory() - used < 30e6
@@ -456,19 +464,19 @@ def test_beyond_capacity_a_newcomer_is_told_to_wait_and_gets_the_first_free_plac
         with inside.served():
             late = [Guest(server, inside=False) for _ in range(3)]
             for guest in late:
-                said = wait_for(lambda guest=guest: [m for m in guest.told if "markdown" in str(m)])
-                assert "All 2 places are taken" in str(said)
+                wait_for(lambda guest=guest: "wait" in guest.own.kinds())
+                assert "All 2 places are taken" in str(guest.own.told)
             assert len(server.thread.labs) == 2
-        leaving.socket.close()
-        wait_for(lambda: len(server._feeds) == 2 and leaving.id not in server._feeds)
-        (entered,) = [number for number in server._feeds if number != 0]
+        leaving.close()
+        wait_for(lambda: len(feeds(server)) == 2 and leaving.id not in feeds(server))
+        known = set(feeds(server))
         wait_for(lambda: any(guest.let_in for guest in late))
         outside = [guest for guest in late if not guest.let_in]
-        clients = len(server.server.get_clients())
-        outside[0].socket.close()  # who waits and leaves frees nothing
-        wait_for(lambda: len(server.server.get_clients()) < clients)
+        visits = len(server.visits)
+        outside[0].close()  # who waits and leaves frees nothing
+        wait_for(lambda: len(server.visits) < visits)
         inside.watch(LEAST)
-        assert set(server._feeds) == {0, entered}
+        assert set(feeds(server)) == known
         assert len(outside) == 2 and not any(guest.let_in for guest in outside)
         inside.close()
     finally:
@@ -497,6 +505,7 @@ def test_a_clock_that_jumps_is_not_noticed(
 SUSPENDED = """
 import sys
 from onpath.app.lab.loops.loop_cache import LoopCache
+from onpath.app.server.arrivals import PAGE_KEY
 from onpath.app.server.lab_server import LabServer
 server = LabServer("127.0.0.1", 0, LoopCache())
 print("told", server.server.get_port(), flush=True)

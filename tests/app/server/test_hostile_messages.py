@@ -23,6 +23,7 @@ from onpath.app.viser_adapter.secure_server import Limits
 from onpath.lessons.words import ENGLISH
 from tests.bench.hostile_messages import DRAG, HONEST, HOSTILE, INDEXES
 from tests.support.lab import assert_sound
+from tests.support.own_socket import feeds
 from tests.support.student import Student
 from tests.support.waiting import wait_for
 
@@ -175,7 +176,7 @@ def test_a_sheet_to_draw_on_with_every_index(tab: Tab) -> None:
 
 @pytest.mark.thorough
 def test_a_wall_and_the_start_of_a_run_with_every_index(tab: Tab) -> None:
-    (feed,) = tab.server._feeds.values()
+    (feed,) = feeds(tab.server).values()
     scene: Any = feed.page._scene
     scene.show_start(True)
     tab.lab.post(c.Set("wall", True))

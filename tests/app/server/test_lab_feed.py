@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any, cast
 
 import pytest
@@ -25,8 +25,7 @@ class Paper:
     """Stands in for a page; notes when it is shown what moves, and when everything."""
 
     is_ready, is_outdated = True, False
-    captions: Mapping[str, str] = {}
-    settle = None
+    client = SimpleNamespace(client_id=1)
 
     def __init__(self) -> None:
         self.exporter, self.now = self, 0
@@ -42,6 +41,20 @@ class Paper:
         """Nothing is exported."""
 
 
+class Untold:
+    """Stands in for our own part of a page, which is told nothing."""
+
+    def follow(self, lab: object, drawn: object, is_turn: bool, settle: object) -> None: ...
+
+    def tell(self, *what: object) -> None: ...
+
+
+def feed_of(data: Any, offset: int, followed: Any = None) -> LabFeed:
+    """What shows a lab on a page of which viser's part is a `Paper`."""
+    make = cast(Any, None)
+    return LabFeed(data, make=make, send=lambda: None, offset=offset, followed=followed)
+
+
 def shown(stride: float, offset: int, *commands: c.Command, every: int = 6) -> Paper:
     """What a page is shown of a lab with this user.
 
@@ -50,7 +63,8 @@ def shown(stride: float, offset: int, *commands: c.Command, every: int = 6) -> P
     """
     lab, paper = new_lab(FRAME), Paper()
     page: Any = paper
-    feed = LabFeed(page, offset)
+    feed = feed_of(cast(Any, Untold()), offset)
+    feed.furnish(page)
     do(lab, *commands)
     for paper.now in range(FRAMES):
         lab.advance(FRAME)
@@ -102,11 +116,9 @@ def test_the_data_channel_waits_until_a_lab_that_is_followed_anew_has_been_shown
     """In a frame of a busy thread in which nothing that moves is shown."""
     own, other, paper, told = new_lab(FRAME), new_lab(FRAME), Paper(), list[object]()
 
-    class Data:
+    class Data(Untold):
         def follow(self, lab: object, drawn: object, is_turn: bool, settle: object) -> None:
             told.append(lab)
-
-        def tell(self, snapshot: object, captions: object) -> None: ...
 
     class Followed:
         found: Any = None
@@ -115,7 +127,8 @@ def test_the_data_channel_waits_until_a_lab_that_is_followed_anew_has_been_shown
             return self.found
 
     page, data, followed = cast(Any, paper), cast(Any, Data()), cast(Any, Followed())
-    feed = LabFeed(page, 0, followed=followed, data=data)
+    feed = feed_of(data, 0, followed)
+    feed.furnish(page)
     stride = STRIDES[-1]
     frame = next(i for i in range(9) if not is_turn(i, stride))
     feed.refresh(own, 1.0)

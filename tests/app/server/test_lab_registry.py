@@ -14,7 +14,6 @@ from onpath.app.server.lab_registry import (
     HISTORY_KEPT,
     KEPT,
     MOST_ABANDONED,
-    MOST_CODES,
     LabRegistry,
     RegisteredLab,
 )
@@ -24,6 +23,7 @@ from onpath.app.storage.records import NotKept
 from onpath.assets.messages import languages
 from onpath.lessons.words import Words
 from tests.support.lab import do, new_lab
+from tests.support.student import MOST_CODES, remembered
 
 
 class Desk:
@@ -42,7 +42,7 @@ class Desk:
         known = self.storage.get(browser)
         entry = self.registry.join(self._clients, known)
         entry.scheduled.display = _View()
-        self.storage[browser] = self.registry.remembered(entry.code, known or "")
+        self.storage[browser] = remembered(entry.code, known or "")
         return self._clients, entry
 
 

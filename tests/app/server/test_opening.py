@@ -24,6 +24,7 @@ from onpath.app.storage.records import Records, file_url
 from onpath.app.viser_adapter.secure_server import Limits
 from onpath.lessons.words import ENGLISH
 from tests.support.lab import loop_cache
+from tests.support.own_socket import feeds
 from tests.support.student import Student
 from tests.support.waiting import wait_for
 
@@ -256,8 +257,8 @@ def test_a_page_is_replaced_when_no_frame_shows_it(monkeypatch: pytest.MonkeyPat
         student.open()
         student.read(lambda: student.has_widget("K2"))
         (entry,) = server.registry._entries.values()
-        (client,) = server.server.get_clients().values()
-        page = next(iter(server._feeds.values())).page
+        (visit,) = server.visits
+        page = next(iter(feeds(server).values())).page
         show = page.show
 
         def shown_slowly(snapshot: Any) -> None:
@@ -267,10 +268,11 @@ def test_a_page_is_replaced_when_no_frame_shows_it(monkeypatch: pytest.MonkeyPat
         monkeypatch.setattr(page, "show", shown_slowly)
         assert gate.reached.wait(WAIT)
         before = error_log._seen.copy()
-        reopened = in_thread(lambda: server._reopen(client, entry))
+        reopened = in_thread(lambda: server._reopen(visit, entry))
         wait_for(lambda: server.thread._calls or not reopened.is_alive(), WAIT)
         gate.open.set()
         reopened.join(WAIT)
-        assert not reopened.is_alive() and next(iter(server._feeds.values())).page is not page
+        assert not reopened.is_alive()
+        wait_for(lambda: any(f.page is not page for f in feeds(server).values()), WAIT)
         assert error_log._seen == before
     server.stop()

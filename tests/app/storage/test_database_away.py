@@ -32,7 +32,7 @@ from onpath.app.storage.write_behind import WriteBehind
 from onpath.lessons.words import ENGLISH, Words
 from tests.support import waiting
 from tests.support.lab import do, new_lab, run
-from tests.support.student import Student
+from tests.support.student import Student, remembered
 
 BRIEF = 0.01  # [s], for what waits in vain in these tests
 until = partial(waiting.wait_for, seconds=60.0)
@@ -213,7 +213,7 @@ def test_a_browser_shows_it(tmp_path: Path, impatient: None) -> None:
     file = tmp_path / "labs.db"
     server = LabServer("127.0.0.1", 0, LoopCache(), ServerOptions(records=Records(file_url(file))))
     try:
-        with Student(f"ws://127.0.0.1:{server.server.get_port()}", channel=True) as student:
+        with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
             student.open()
             student.find("K2")
             with locked(file):
@@ -315,7 +315,7 @@ def test_a_returning_user_waits_for_four_seconds_at_most_is_told_and_finds_the_l
         entry = server.registry.join(1, "a" * 12)
         assert 0 < len(granted) <= 2 and sum(granted) <= 2 * 0.2
         assert entry.code != "a" * 12 and "cannot be opened now" in page(entry.scheduled.lab)
-    known = server.registry.remembered(entry.code, "a" * 12)
+    known = remembered(entry.code, "a" * 12)
     server.registry.leave(1)
     assert server.registry.join(2, known).code == "a" * 12  # a reload
     assert server.registry.join(3, known).code == entry.code

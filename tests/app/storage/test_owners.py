@@ -42,6 +42,12 @@ class Process:
             keeper=self.keeper,
         )
 
+    def leave(self, client: int) -> None:
+        """Have a client leave, as it is when its page has been closed."""
+        entry = self.registry.leave(client)
+        if entry is not None:
+            self.registry.give_back(entry.code)
+
     def _lose(self, code: str) -> None:
         self.lost.append(code)
         self.registry.lose(code)
@@ -140,7 +146,7 @@ def test_a_lab_moves_to_and_fro_between_processes_as_it_was_left(two: list[Proce
     code = here.registry.join(1, None).code
     for gain in (41, 42, 43):
         here.set(code, gain)
-        here.registry.leave(1)
+        here.leave(1)
         assert there.registry.join(1, code).code == code and there.gain(code) == gain
         here, there = there, here
     assert not two[0].lost and not two[1].lost
@@ -156,7 +162,7 @@ def test_a_lab_that_moved_away_while_its_process_was_suspended_is_given_up(
     one.set(code, 42)  # not stored yet
     assert other.registry.join(1, code).code == code and other.gain(code) == 41
     other.set(code, 43)
-    other.registry.leave(1)
+    other.leave(1)
     one.keeper.flush(code)
     assert one.lost == [code] and one.registry.find(code) is None
     assert one.registry.join(2, code).code == code and one.gain(code) == 43
@@ -173,10 +179,10 @@ def test_a_lab_that_waited_here_meanwhile_is_read_again_and_its_late_changes_are
     one.set(code, 42)
     with monkeypatch.context() as away:  # the database, when the client leaves
         away.setattr(one.records, "save", _refuse)
-        one.registry.leave(1)
+        one.leave(1)
     assert other.registry.join(1, code).code == code
     other.set(code, 43)
-    other.registry.leave(1)
+    other.leave(1)
     assert one.registry.join(1, code).code == code and one.gain(code) == 43
     one.keeper.flush(code)
     assert other.registry.join(1, code).code == code and other.gain(code) == 43
@@ -192,7 +198,7 @@ def test_a_lab_that_is_dropped_before_it_could_be_stored_is_opened_as_it_was_lef
     here.set(code, 42)
     with monkeypatch.context() as away:  # the database
         away.setattr(here.records, "save", _refuse)
-        here.registry.leave(1)
+        here.leave(1)
         here.registry.lose(code)
         assert here.registry.join(1, code).stands_in  # not as it was stored before
     assert here.registry.join(2, code).code == code and here.gain(code) == 42
@@ -211,7 +217,7 @@ def test_a_lab_that_is_open_in_one_process_stays_there(
     with pytest.raises(ValueError, match="open"):
         there.registry.enter(2, code)
     here.set(code, 42)
-    here.registry.leave(1)
+    here.leave(1)
     assert there.registry.join(3, code).code == code and there.gain(code) == 42
 
 

@@ -19,6 +19,7 @@ from onpath.app.viser_adapter.page_release import release_page
 from onpath.app.viser_adapter.secure_server import make_server
 from tests.bench.client_protocol import CAMERA, packed
 from tests.bench.raw_socket import frames, knock
+from tests.support.own_socket import feeds
 from tests.support.student import Student
 from tests.support.waiting import wait_for
 
@@ -45,7 +46,7 @@ def arrived(server: LabServer) -> Student:
 
 def parts_of(server: LabServer, keys: bool = True) -> list[weakref.ref[Any]]:
     """What the only page is made of, with its keys or without."""
-    (feed,), (client,) = server._feeds.values(), server.server.get_clients().values()
+    (feed,), (client,) = feeds(server).values(), server.server.get_clients().values()
     page: Any = feed.page
     widgets = client.gui._gui_input_handle_from_uuid.values()
     nodes = client.scene._handle_from_node_name.values()

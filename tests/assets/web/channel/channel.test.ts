@@ -6,11 +6,14 @@ import { chance } from "../random"
 
 /** An engine, and what its server says to it. */
 function heard(): { engine: RemoteEngine; say: (message: unknown) => void } {
-    const engine = new RemoteEngine()
-    return { engine, say: message => (engine as unknown as { hear(message: unknown): void }).hear(structuredClone(message)) }
+    const engine = new RemoteEngine(() => false, false)
+    const say = (message: unknown) => (engine as unknown as { hear(message: unknown): void }).hear(structuredClone(message))
+    say(WORDS)
+    return { engine, say }
 }
 
 const row = (ms: number, flags = 0) => [10 * ms, flags, ...[100, 0, 0, 1000, 2000, 0, 0], ...[200, 0, 0, 3000, 4000, 50, 0]]
+const WORDS = { is: "words", language: "en", words: { a: "b" } }
 const FRAME = { is: "frame", rows: [row(0), row(16)], running: true, past: null, anew: true, fields: [] }
 const PATH = { is: "path", points: [[0, 0], [1000, 0], [1000, 1000], [0, 0]], closed: true, right: [1, 0], up: [0, 1] }
 const STATE = {
@@ -20,6 +23,7 @@ const STATE = {
     cameras: [], arrow: 1, frozen: "", own: true, rows: [], laws: ["", ""], shared: "",
 }
 const MESSAGES: Record<string, unknown>[] = [
+    WORDS, { is: "lab", code: "abcdefghijkl" }, { is: "store", key: "speaks", value: "no" }, { is: "wait", text: "full" },
     FRAME, { ...FRAME, anew: false, rows: [row(33, 3)] }, PATH, STATE, { is: "state", rate: 0.5 },
     { is: "lit", symbol: "rho", lines: [[[0, 0]], [[0, 0]]] }, { is: "alive" }, { is: "refused", why: "so" },
     { is: "lesson", lesson: "", version: 1, index: 0, ended: false, test: false, playing: false, symbols: {}, head: "", pager: "", sections: {}, steps: [], charts: [] },
