@@ -9,8 +9,14 @@ from msgspec import Meta, Struct
 
 # From the page
 
-SheetName = Literal["robots", "laws", "compare", "keep", "lessons", "help", "display", "index"]
+SheetName = Literal[
+    "robots", "laws", "compare", "keep", "lessons", "help", "display", "index", "choices"
+]
 """What a page can open, and the index of its search."""
+
+
+class Freehand(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="freehand"):
+    """The next stroke around a robot becomes the path; asked for again, no stroke does."""
 
 
 class Ask(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="ask"):
@@ -49,7 +55,7 @@ class CompareLaws(
     obstruction: Annotated[str, Meta(max_length=80)]
 
 
-Request = Ask | Prefer | ResetView | AskSummary | EnterLab | CompareLaws
+Request = Ask | Freehand | Prefer | ResetView | AskSummary | EnterLab | CompareLaws
 """What the page asks of its server, without a change of the lab."""
 
 
@@ -271,6 +277,23 @@ class ComparedLaw(Struct, frozen=True, kw_only=True):
     beyond: str
     step: float
     curve: list[float]
+
+
+class PathOutline(Struct, frozen=True, kw_only=True):
+    """A path to choose; `outline` is a path of SVG in a square from -50 to 50, up is negative."""
+
+    name: str
+    label: str
+    outline: str
+
+
+class Choices(Struct, frozen=True, kw_only=True, tag_field="is", tag="choices"):
+    """What the robot is, what it can follow, under which laws, and a law to begin typing with."""
+
+    robot: RobotCard
+    paths: list[PathOutline]
+    laws: list[LawChoice]
+    own: str
 
 
 class Compared(Struct, frozen=True, kw_only=True, tag_field="is", tag="compared"):

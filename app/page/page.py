@@ -119,6 +119,16 @@ class Page:
         """Whose page it is."""
         return self._client
 
+    def draw(self) -> None:
+        """Take the next stroke around a robot as the path; called again, take none."""
+        if self._scene.is_drawing:
+            self._scene.end_freehand()
+            return
+        robot, post = self._robot, self._post
+        self._scene.begin_freehand(
+            lambda stroke: post(c.DrawPath(plane_coordinates(robot, stroke)))
+        )
+
     def settle(self) -> None:
         """Refit the camera now and for a while, because the canvas has changed its size."""
         self._framed, self._settling = 0.0, SETTLING
@@ -196,6 +206,7 @@ class Page:
             brand_color=AZURE.rgb,
             dark_mode=self._dark,
         )
+        self._post = post
         self._lay_out(first)
         tones = DARK if self._dark else LIGHT
         stage = stage_of(robot, tones, self._context.look.plain)
@@ -286,6 +297,7 @@ class Page:
             overlays=self._overlays,
             context=self._context,
             reset_view=self.reset_view,
+            draw=self.draw,
         )
 
     def _build_navigation(self, first: PageSnapshot, words: Words, post: Post) -> None:

@@ -11,6 +11,7 @@ from onpath.app.channel.sheet_messages import (
     AskSummary,
     CompareLaws,
     EnterLab,
+    Freehand,
     Prefer,
     Request,
     ResetView,
@@ -35,6 +36,7 @@ class PageRequests:
     Args:
         exporter: compares laws.
         reset_view: resets the camera.
+        draw: begins to draw a path with the mouse, or ends it.
     """
 
     def __init__(
@@ -42,9 +44,10 @@ class PageRequests:
         context: PageContext,
         exporter: Exporter,
         reset_view: Callable[[], None],
+        draw: Callable[[], None],
     ) -> None:
         self._context, self._exporter, self._text = context, exporter, context.text
-        self._reset_view = reset_view
+        self._reset_view, self._draw = reset_view, draw
         self._sheets = SheetContext(
             course=context.course,
             code=shown(context.code),
@@ -60,6 +63,8 @@ class PageRequests:
                 text.submit(lambda: tell(sheet_of(what, snapshot, words, self._sheets)))
             case Prefer(name=name, on=on):
                 text.preferences.set(name, on)
+            case Freehand():
+                self._draw()
             case ResetView():
                 self._reset_view()
             case AskSummary():

@@ -9,8 +9,7 @@ import viser
 
 from onpath.app.exports.exporter import Exporter
 from onpath.app.exports.path_upload import PathReader
-from onpath.app.lab import commands as c
-from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.background import Submit
 from onpath.app.page.build_queue import one_at_a_time
 from onpath.app.page.overlays import Overlays
@@ -27,7 +26,6 @@ from onpath.app.page.panels.show_panel import ShowPanel
 from onpath.app.page.panels.start_panel import StartPanel
 from onpath.app.page.panels.wall_panel import WallPanel
 from onpath.app.page.panels.widgets import ParameterWidgets, Post, on_press
-from onpath.app.scene.pointer_projection import plane_coordinates
 from onpath.app.scene.scene import Scene
 from onpath.lessons.action_schema import StepSetup
 from onpath.lessons.vocabulary.names import CONTROLS
@@ -70,6 +68,7 @@ class PanelFactory:
         scene: target of drawing, pulling and shading.
         overlays: the optional drawings in the scene.
         reset_view: resets the camera.
+        draw: begins to draw a path with the mouse, or ends it.
     """
 
     def __init__(
@@ -84,8 +83,9 @@ class PanelFactory:
         overlays: Overlays,
         context: PageContext,
         reset_view: Callable[[], None],
+        draw: Callable[[], None],
     ) -> None:
-        self._reset_view, self._overlays = reset_view, overlays
+        self._reset_view, self._overlays, self._draw = reset_view, overlays, draw
         self._gui, self._words, self._post = gui, words, post
         self._exporter, self._submit = exporter, submit
         self._scene, self._context = scene, context
@@ -147,16 +147,6 @@ class PanelFactory:
         return [] if part is None else [part]
 
     def _editor(self, first: PageSnapshot, expanded: bool) -> Part:
-        robot = robot_of(first)
-
-        def draw() -> None:
-            if self._scene.is_drawing:  # pressed again
-                self._scene.end_freehand()
-                return
-            self._scene.begin_freehand(
-                lambda stroke: self._post(c.DrawPath(plane_coordinates(robot, stroke)))
-            )
-
         def shade(visible: bool) -> None:
             self._scene.show_singular_zone(visible)
 
@@ -166,7 +156,7 @@ class PanelFactory:
                 self._words,
                 self._post,
                 first=first,
-                draw=draw,
+                draw=self._draw,
                 show_zone=shade,
                 files=self._files,
             )

@@ -85,6 +85,7 @@ class PageData:
             context=context,
             exporter=self._files.exporter,
             reset_view=self._reset_view,
+            draw=self._draw,
         )
         self._is_resized = self._skips = False
         self._requests, self._answers = deque[Request](), deque[Struct](maxlen=MOST_REQUESTS)
@@ -201,6 +202,10 @@ class PageData:
         elif self._view is None or self._view[0] is not robot:
             self._view = robot, seen_at_first(stage_of(robot), robot)
         return self._view[1]
+
+    def _draw(self) -> None:
+        if (page := self._page) is not None:
+            page.draw()
 
     def _reset_view(self) -> None:
         if (page := self._page) is not None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import lru_cache
 
 import numpy as np
 import viser
@@ -23,6 +22,7 @@ from onpath.app.page.panels.widgets import (
     put_number,
     refused,
 )
+from onpath.app.view.choices import remark_on
 from onpath.app.viser_adapter.file_uploads import take_files
 from onpath.lessons.labels import parameter_heading, parameter_help, path_label
 from onpath.lessons.words import Words
@@ -30,11 +30,9 @@ from onpath.models.control.rank_test import rank_map
 from onpath.models.control.settable import specs
 from onpath.models.errors import Message
 from onpath.models.path_files.placing import RADIUS, ROUND, SMOOTH, Placing
-from onpath.models.paths.curve_faults import ambiguities, curve_faults
 from onpath.models.paths.frames import SlantedPlane
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS
-from onpath.models.systems.robots import Robot
 
 
 class PathChoice:
@@ -76,15 +74,6 @@ class PathChoice:
         """The presets, and an entry for the user's own path while there is one."""
         presets = tuple(self._shown.values())
         return presets if snapshot.edit.name in self._shown else (*presets, self._custom)
-
-
-@lru_cache(maxsize=64)
-def remark_on(preset: str, robot: Robot) -> str:
-    """Key of the words for a preset that is refused or crosses itself; empty for others."""
-    curve = presets()[preset].curve
-    if curve_faults(robot.margin, curve):
-        return "design.refused"
-    return "design.ambiguous" if ambiguities(curve) else ""
 
 
 class PathPanel:

@@ -5,7 +5,7 @@ import { AT_JOINTS } from "../core/symbols"
 import { Files } from "./files"
 import { keep, keepLab, kept, siteOf } from "./kept"
 import {
-    PROTOCOL, type Ask, type Command, type Compared, type CompareSheet, type DisplaySheet, type FrameMessage, type Hello, type HelpSheet, type Index, type KeepSheet,
+    PROTOCOL, type Ask, type Choices, type Command, type Compared, type CompareSheet, type DisplaySheet, type FrameMessage, type Hello, type HelpSheet, type Index, type KeepSheet,
     type LabMessage, type LawSheet, type LessonMessage, type LessonSheet, type Light, type MeasuredMessage, type PageMessage, type PathMessage,
     type RobotSheet, type StateMessage, type Told, type WordsMessage,
 } from "./messages"
@@ -24,7 +24,7 @@ const SETTLES = 400 // [ms], until what the server shows counts again
 /** Where the numbers of a field are among those that a row has besides for each robot. */
 type Fields = Map<string, { first: number; size: number; unit: number }>
 type SheetName = Ask["what"]
-type Answer = RobotSheet | LawSheet | CompareSheet | KeepSheet | LessonSheet | HelpSheet | DisplaySheet | Index
+type Answer = RobotSheet | LawSheet | CompareSheet | KeepSheet | LessonSheet | HelpSheet | DisplaySheet | Index | Choices
 
 /** A path through points at evenly spaced θ from -π to π. */
 class SampledPath implements PathShape {

@@ -174,7 +174,12 @@ export interface MakeFile {
 /** Tell what a sheet shows; the answer's `is` is its name. */
 export interface Ask {
     is: "ask"
-    what: "compare" | "display" | "help" | "index" | "keep" | "laws" | "lessons" | "robots"
+    what: "choices" | "compare" | "display" | "help" | "index" | "keep" | "laws" | "lessons" | "robots"
+}
+
+/** The next stroke around a robot becomes the path; asked for again, no stroke does. */
+export interface Freehand {
+    is: "freehand"
 }
 
 /** Keep a switch in the browser; see `app.page.preferences`. */
@@ -278,6 +283,7 @@ export type PageMessage =
     | DropFile
     | MakeFile
     | Ask
+    | Freehand
     | Prefer
     | ResetView
     | AskSummary
@@ -450,6 +456,10 @@ export interface StateMessage {
     laws: string[]
     /** the share code that was made last; may be empty. */
     shared: string
+    /** name of the path; "edited" or "drawn" if it is the user's own. */
+    path: string
+    /** why the law that was typed last for a robot was refused; may be empty. */
+    refusals: string[]
     /** number of viser's client for which the lab draws the robots; 0 without one. */
     scene: number
 }
@@ -578,6 +588,30 @@ export interface RobotSheet {
     robots: RobotCard[]
 }
 
+/** A path to choose; `outline` is a path of SVG in a square from -50 to 50, up is negative. */
+export interface PathOutline {
+    name: string
+    label: string
+    outline: string
+}
+
+/** A law that can be compared; a typed one is its own name. `chosen`: at first. */
+export interface LawChoice {
+    name: string
+    label: string
+    text: string
+    chosen: boolean
+}
+
+/** What the robot is, what it can follow, under which laws, and a law to begin typing with. */
+export interface Choices {
+    is: "choices"
+    robot: RobotCard
+    paths: PathOutline[]
+    laws: LawChoice[]
+    own: string
+}
+
 /** A law in four sentences, and its source. */
 export interface LawDescription {
     name: string
@@ -603,14 +637,6 @@ export interface LawSheet {
     bounds: string
     own: string[]
     names: NameMeaning[]
-}
-
-/** A law that can be compared; a typed one is its own name. `chosen`: at first. */
-export interface LawChoice {
-    name: string
-    label: string
-    text: string
-    chosen: boolean
 }
 
 /** An obstruction. */
@@ -788,6 +814,7 @@ export type LabMessage =
     | Alive
     | Refused
     | RobotSheet
+    | Choices
     | LawSheet
     | CompareSheet
     | KeepSheet

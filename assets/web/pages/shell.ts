@@ -1,7 +1,7 @@
 // What stands around the stage of the lab's page: the head, the controls, the search, the keys, and all that opens.
 
 import type { RemoteEngine } from "../channel/channel"
-import type { Command, Compared, Index, PageMessage, Told } from "../channel/messages"
+import type { Choices, Command, Compared, Index, PageMessage, Told } from "../channel/messages"
 import { keptLook, keepLook } from "../core/look"
 import { said, type Texts } from "../core/words"
 import { Compare } from "../parts/compare_sheet"
@@ -15,8 +15,11 @@ import { aboutLaws } from "../parts/law_sheet"
 import { chooseLesson } from "../parts/lesson_sheet"
 import { Panel } from "../parts/panel"
 import { pointAtStage } from "../parts/pointing"
+import { OwnLaw } from "../parts/own_law_sheet"
+import { openPath } from "../parts/path_sheet"
 import { chooseRobot } from "../parts/robot_sheet"
 import { Search, type Entry } from "../parts/search"
+import { Setup } from "../parts/setup"
 import type { SheetDialog } from "../parts/sheet"
 
 /** What can be opened, with the title under which the search finds it. */
@@ -41,15 +44,24 @@ export class Shell {
     private readonly search: Search
     private readonly keys: Keys
     private index: Index | null = null
+    private choices: Choices | null = null
     private known = "" // language and robot of the index
     private opened: { name: Opens; dialog: SheetDialog } | null = null
     private keep: Keep | null = null
     private compare: Compare | null = null
+    private readonly setup: Setup
+    private ownLaw: OwnLaw | null = null
 
     /** `reopen`: what was open before the page got its present words. */
     constructor(private readonly engine: RemoteEngine, private readonly texts: Texts, signal: AbortSignal, reopen: string) {
         this.header = new Header(texts, place => this.go(place))
         this.panel = new Panel(texts, this.header.controls, signal)
+        this.setup = new Setup(texts, engine, {
+            open: what => void this.open(what),
+            file: () => void openPath(texts, engine),
+            type: side => this.type(side),
+        })
+        this.panel.body.append(this.setup.element)
         this.search = new Search(texts, () => this.entries())
         this.keys = new Keys(message => engine.send(message), () => this.search.open(), signal)
         engine.on(change => {
@@ -94,6 +106,13 @@ export class Shell {
         this.opened = { name, dialog: await opens[name]() }
     }
 
+    private type(side: 0 | 1): void {
+        this.ownLaw = new OwnLaw(this.texts, this.engine, side, this.choices?.own ?? "", () => void this.open("laws"), () => {
+            this.ownLaw = null
+            this.setup.restore()
+        })
+    }
+
     private go(place: string): void {
         if (place === "controls") this.panel.show(!this.panel.isOpen)
         else if (place === "search") this.search.open()
@@ -104,6 +123,8 @@ export class Shell {
         const { engine } = this, lab = engine.lab!
         this.keep?.show(lab.shared)
         this.compare?.follow()
+        this.ownLaw?.follow()
+        this.setup.follow()
         this.panel.freeze(lab.frozen)
         const known = `${lab.language} ${lab.robot}`
         if (known === this.known) return
@@ -112,6 +133,10 @@ export class Shell {
             this.index = index
             this.keys.known = index.keys
             this.search.renew()
+        })
+        void engine.ask("choices").then(choices => {
+            this.choices = choices
+            this.setup.offer(choices)
         })
     }
 

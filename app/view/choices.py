@@ -1,0 +1,73 @@
+"""What is chosen first: the robot, the path, and the laws."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+
+from onpath.app.channel.sheet_messages import Choices, LawChoice, PathOutline
+from onpath.app.view.laws import suitable
+from onpath.app.view.robots import robot_card
+from onpath.lessons.labels import path_label
+from onpath.lessons.sides import law_label, law_text
+from onpath.lessons.words import Words
+from onpath.models.control.laws.own import PATH_FOLLOWING
+from onpath.models.control.sides import DEFAULT_LAWS
+from onpath.models.paths.curve_faults import ambiguities, curve_faults
+from onpath.models.paths.frames import SlantedPlane
+from onpath.models.paths.path_design import presets
+from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.robots import Robot
+
+POINTS = 60  # of an outline
+HALF = 46.0  # of its size; the picture has 50 in each direction
+
+
+def choices(robot: Robot, words: Words) -> Choices:
+    """What a robot can follow, and under which laws."""
+    return Choices(
+        robot=robot_card(ROBOTS[robot.name], words),
+        paths=[
+            PathOutline(name=name, label=preset_label(name, robot, words), outline=outline(name))
+            for name in presets()
+        ],
+        laws=[
+            LawChoice(
+                name=name,
+                label=law_label(name, words),
+                text=law_text(name, words),
+                chosen=name in DEFAULT_LAWS.values(),
+            )
+            for name in suitable(robot)
+        ],
+        own=PATH_FOLLOWING,
+    )
+
+
+def preset_label(preset: str, robot: Robot, words: Words) -> str:
+    """The name of a path, and what a robot has to say about it."""
+    label = path_label(preset, words)
+    if preset == "circle" and isinstance(robot.frame, SlantedPlane):
+        label = words("design.slanted_circle")
+    key = remark_on(preset, robot)
+    return words(key, path=label) if key else label
+
+
+@lru_cache(maxsize=64)
+def remark_on(preset: str, robot: Robot) -> str:
+    """Key of the words for a preset that is refused or crosses itself; empty for others."""
+    curve = presets()[preset].curve
+    if curve_faults(robot.margin, curve):
+        return "design.refused"
+    return "design.ambiguous" if ambiguities(curve) else ""
+
+
+@lru_cache(maxsize=32)
+def outline(preset: str) -> str:
+    """A preset as a path of SVG in a square from -50 to 50, up is negative."""
+    curve = presets()[preset].curve
+    points = curve.at(np.linspace(-np.pi, np.pi, POINTS)) * [1.0, -1.0]
+    low, high = points.min(axis=0), points.max(axis=0)
+    scaled = (points - (low + high) / 2) * (2 * HALF / max(float((high - low).max()), 1e-9))
+    return "M" + "L".join(f"{x:.1f} {y:.1f}" for x, y in scaled) + ("Z" if curve.closed else "")
