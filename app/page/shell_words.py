@@ -23,7 +23,7 @@ SHELL = (
     *("laws.left", "laws.right", "laws.own", "laws.own_left", "laws.own_right"),
     *("laws.own_hint", "laws.use", "robots.choose"),
     *("setup.draw", "setup.file", "setup.file_hint", "setup.edit_law", "setup.compare"),
-    *("check.robot", "design.path", "design.own", "design.draw_hint", "design.undo"),
+    *("setup.left", "setup.right", "design.path", "design.own", "design.draw_hint", "design.undo"),
     *("design.redo", "design.files", "design.upload", "design.reading"),
     *("design.size", "design.size_hint", "design.radius", "design.radius_hint"),
     *("design.open", "design.open_hint"),

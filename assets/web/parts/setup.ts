@@ -42,6 +42,7 @@ export class Setup {
         this.laws = SIDES.map((side, i) => {
             const select = made("select", ""), says = made("p", `says side${i}`), refusal = made("p", "refusal")
             select.id = `op-law-${side}`
+            select.ariaLabel = words(`laws.${side}`)
             select.addEventListener("change", () => this.choose(i as 0 | 1, select.value))
             refusal.setAttribute("role", "alert")
             const edit = pressed("edit", words("setup.edit_law"), () => host.type(i as 0 | 1))
@@ -49,11 +50,11 @@ export class Setup {
             return { select, says, refusal, edit }
         })
         const rows = this.laws.map(({ select, says, refusal, edit }, i) => {
-            const name = Object.assign(made("label", "name", words(`laws.${SIDES[i]!}`)), { htmlFor: select.id })
+            const name = Object.assign(made("label", "name", words(`setup.${SIDES[i]!}`)), { htmlFor: select.id })
             return made("div", "law", made("div", "field", name, select), says, edit, refusal)
         })
         this.element.append(
-            made("div", "group", made("div", "field", made("span", "name", words("check.robot")), this.robot),
+            made("div", "group", made("div", "field", made("span", "name", words("search.kind_robot")), this.robot),
                 made("div", "field", made("span", "name", words("design.path")), this.path), this.tiles, acts),
             made("div", "group", ...rows, made("div", "acts", pressed("", words("setup.compare"), () => host.open("compare")), pressed("", words("laws.about"), () => host.open("laws")))),
         )

@@ -35,6 +35,7 @@ def labels(scene: StepSetup, first: PageSnapshot, words: Words) -> set[str]:
         overlays=other,
         context=other,
         reset_view=other,
+        draw=other,
     )
     factory.of_step(scene, first)
     added = [call for call in gui.mock_calls if call[0].startswith("add_")]
