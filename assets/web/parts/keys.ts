@@ -21,6 +21,7 @@ export class Keys {
     constructor(private readonly send: (message: ShownKey["send"]) => void, search: () => void, signal: AbortSignal) {
         document.body.addEventListener("keydown", event => {
             if (event.defaultPrevented) return
+            if (isSheetOpen()) return event.stopPropagation() // what listens beyond would take Escape from it
             if (searches(event)) search()
             else if (!this.press(event)) return
             event.preventDefault()
@@ -30,7 +31,7 @@ export class Keys {
 
     private press(event: KeyboardEvent): boolean {
         const key = keyOf(event), control = event.ctrlKey || event.metaKey, { target } = event
-        if (!(target instanceof Element) || event.altKey || event.isComposing || isSheetOpen()) return false
+        if (!(target instanceof Element) || event.altKey || event.isComposing) return false
         if (target.closest(FIELD) || OWN.some(([selector, keys]) => keys.includes(key) && target.closest(selector))) return false
         const found = this.known.find(each => each.key === key && each.control === control)
         if (!found) return false

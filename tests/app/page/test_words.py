@@ -84,7 +84,7 @@ KEYS_MADE = (
     *("check.above", "check.below", "gains.across", "gains.along"),
     *("lesson.back", "lesson.again", "lesson.close", "site.control.", "symbol.", "show."),
     *("standalone.recorded_", "arena."),
-    *("search.kind_", "search.of_", "aid.", "robots.differs_", "export."),
+    *("search.kind_", "search.of_", "aid.", "robots.differs_", "export.", "form."),
     *("readout.distance", "readout.now", "readout.most"),
     *ELSEWHERE,
 )
