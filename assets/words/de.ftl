@@ -1770,6 +1770,7 @@ site-control-robot = die Wahl des Roboters
 site-control-laws = die Wahl des Gesetzes
 site-control-flexible = Ausgang, Zugebene und Vergrößerung des elastischen Balkens
 site-control-identify = die Identifikation
+site-why-identify = sie braucht Aufzeichnungen jeder Millisekunde und die Statistik der Schätzwerte
 site-control-show = was in der Szene gezeigt wird: Beschriftungen, Schlauch, Koordinaten, Rangtest, beide Fehler, effektive Masse
 site-control-wall = die Wand
 site-control-start = der Start neben der Bahn

@@ -1362,6 +1362,7 @@ site-control-robot = the choice of the robot
 site-control-laws = the choice of the law
 site-control-flexible = output, pull plane and exaggeration of the flexible link
 site-control-identify = identification
+site-why-identify = it needs a record of every millisecond, and statistics of the estimates
 site-control-show = what is shown in the scene: labels, tube, coordinates, rank test, both errors, effective mass
 site-control-wall = the wall
 site-control-start = the start beside the path

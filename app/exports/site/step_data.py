@@ -57,7 +57,7 @@ def site_step(
         )
         for block_index, block in enumerate(step.blocks)
     ]
-    script = figure.script(step.script)
+    script, lacking = figure.script(step.script), lacking_words(figure, words)
     data = {
         "kind": step.kind,
         "optional": step.optional,
@@ -65,6 +65,7 @@ def site_step(
         "script": script,
         "values": _values(step, figure),
         "plots": figure.plots,
+        "onlyLab": lacking,
         "blocks": [_block(part, lesson, index, figure, words) for part in parts],
     }
     lab_only = step.script is not None and script is None
@@ -74,7 +75,7 @@ def site_step(
         parts,
         words,
         plays=script is not None,
-        lacking=lacking_words(figure, words),
+        lacking=", ".join(f"{name} ({why})" if why else name for name, why in lacking.items()),
     )
     return SiteStep(
         number=index + 1,

@@ -163,6 +163,10 @@ def step_figure(
     figure = replace(figure, remade=_remade(figure, lesson, wanted))
     sliders = tuple(name for name in wanted if name in (*figure.changing, *figure.remade))
     lacking = [name for name in (*wanted, *own) if name not in (*sliders, *HERE)]
+    if step.kind == "quiz":  # asks about what was seen before
+        lacking = []
+    if any(action.identify for action in actions) and "identify" not in lacking:
+        lacking.append("identify")
     return StepFigure(
         choice=replace(figure, sliders=sliders),
         lacking=tuple(lacking),
@@ -256,16 +260,15 @@ def _shared_data(choice: FigureChoice, words: Words) -> dict[str, Any]:
     return _SHARED[key]
 
 
-def lacking_words(figure: StepFigure, words: Words) -> str:
-    """What a step has only in the lab, in words; empty if nothing."""
+def lacking_words(figure: StepFigure, words: Words) -> dict[str, str]:
+    """What a step has only in the lab -> the reason, in words."""
     known = lab_specs(type(figure.choice.parameters))
-    named = [
+    return {
         setting_label(name, figure.choice.parameters, words)
         if name in known
-        else words(f"site.control.{name}")
+        else words(f"site.control.{name}"): words.get(f"site.why.{name}", "")
         for name in figure.lacking
-    ]
-    return ", ".join(named)
+    }
 
 
 def _paths(lesson: Lesson, index: int, scene: StepSetup) -> list[str]:
