@@ -42,7 +42,7 @@ from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.path_design import presets
 
-ALWAYS = ("pull", "run", "step", "reset", "plot")
+ALWAYS = ("pull", "hold", "run", "step", "reset", "plot")
 """Controls that every step of the lab has."""
 HERE = ("hold", "editor", "show", "start", "larger")
 """Controls besides parameters that a step's page has, too."""
@@ -199,8 +199,7 @@ def _controls(scene: StepSetup, step: Step) -> tuple[str, ...]:
     """The controls of a step's figure."""
     if step.kind == "predict":
         return ()
-    more = {"hold": "hold", "editor": "drag"}
-    return (*ALWAYS, *(more[name] for name in scene.controls if name in more))
+    return (*ALWAYS, "drag") if "editor" in scene.controls else ALWAYS
 
 
 def figure_of(figure: StepFigure, words: Words) -> dict[str, Any]:
