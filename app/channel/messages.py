@@ -83,6 +83,22 @@ class Skip(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag=
     """The user wants no introduction any more."""
 
 
+class AskForm(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="fields"):
+    """Tell the form and the values of its fields, from now on."""
+
+
+class SetField(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="set"):
+    """A field of the form has another value.
+
+    Attributes:
+        number: larger than that of all messages before; see `ValuesMessage.heard`.
+    """
+
+    name: Annotated[str, Meta(max_length=60)]
+    value: bool | Annotated[float, Meta(ge=-1e9, le=1e9)] | Annotated[str, Meta(max_length=2000)]
+    number: int
+
+
 class Light(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="light"):
     """Tell where a symbol is found on the robots, until another one is asked for.
 
@@ -175,6 +191,8 @@ PageMessage = (
     | Dark
     | Resized
     | Skip
+    | AskForm
+    | SetField
     | Light
     | Plot
     | SendFile

@@ -129,6 +129,11 @@ class Page:
             lambda stroke: post(c.DrawPath(plane_coordinates(robot, stroke)))
         )
 
+    @property
+    def switches(self) -> Switches:
+        """What the page draws besides the robots."""
+        return self._switches
+
     def settle(self) -> None:
         """Refit the camera now and for a while, because the canvas has changed its size."""
         self._framed, self._settling = 0.0, SETTLING

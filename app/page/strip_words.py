@@ -10,6 +10,7 @@ from onpath.app.exports.standalone.figure_words import CHART
 from onpath.app.page.first_minute import INVITATIONS
 from onpath.app.page.shell_words import FILLED, SHELL
 from onpath.app.steps.player_words import player_words
+from onpath.app.view.forms import form_words
 from onpath.lessons.words import Words
 
 _PLAIN = (
@@ -48,5 +49,5 @@ def words_message(language: str) -> bytes:
         key: words(key, **{name: f"{{{name}}}" for name in names}) for key, names in _FILLED.items()
     }
     messages["design.upload_hint"] = words("design.upload_hint", most=f"{MOST_BYTES / 1e6:g}")
-    texts = messages | {"point": words("report.point")}
+    texts = messages | form_words(words)
     return encoded(WordsMessage(language, texts))

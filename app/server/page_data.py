@@ -14,6 +14,7 @@ from msgspec import Struct
 from onpath.app.channel.data_frame import LENGTH, FrameSource, frame_message, path_message
 from onpath.app.channel.messages import (
     Alive,
+    AskForm,
     Dark,
     DropFile,
     Hello,
@@ -27,6 +28,7 @@ from onpath.app.channel.messages import (
     Seen,
     SendFile,
     SendPart,
+    SetField,
     Skip,
     StateMessage,
     changes,
@@ -47,6 +49,7 @@ from onpath.app.scene.projection import seen_at_first
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.scene.symbol_geometry import has_meaning, symbol_lines
 from onpath.app.server.page_files import PageFiles
+from onpath.app.server.page_form import PageForm
 from onpath.app.server.tab_visibility import TabVisibility
 from onpath.app.viser_adapter.data_channel import Message, PageStream
 from onpath.models.systems.robots import Robot
@@ -87,6 +90,7 @@ class PageData:
             reset_view=self._reset_view,
             draw=self._draw,
         )
+        self._form = PageForm(own.post)
         self._is_resized = self._skips = False
         self._requests, self._answers = deque[Request](), deque[Struct](maxlen=MOST_REQUESTS)
         self._lesson = self._measured = b""
@@ -120,6 +124,7 @@ class PageData:
         if stream.opened != self._opened:
             self._opened = stream.opened
             self._files.restart()
+            self._form.restart()
             self._source.forget()
             self._path, self._state, self._language = None, None, ""
             self._lesson = self._measured = b""
@@ -179,6 +184,9 @@ class PageData:
             self._state = state
             messages.append(partial(encoded_changes, StateMessage, news))
         messages += self._of_lesson()
+        if self._form.is_asked:
+            news = self._form.news(snapshot, page, self._context.course, text.words)
+            messages += [partial(encoded, each) for each in news]
         while self._answers:
             messages.append(partial(encoded, self._answers.popleft()))
         if messages:
@@ -237,11 +245,10 @@ class PageData:
                 self.own.post(message)
             case Command():
                 return encoded(Refused("this lab is only shown"))
-            case SendFile() if not self._is_own:
-                return encoded(Refused("this lab is only shown"))
             case SendFile() | SendPart() | DropFile() | MakeFile():
-                answer = self._files.hear(message)
-                return b"" if answer is None else encoded(answer)
+                return self._hear_file(message)
+            case AskForm() | SetField():
+                self._form.hear(message, self._is_own)
             case Hello():
                 return encoded(Refused("the channel is open"))
             case Seen() | Dark() | Resized() | Skip() | Light() | Plot():
@@ -266,6 +273,13 @@ class PageData:
                 self._symbol = symbol
             case Plot(fields=fields):
                 self._plotted = fields
+
+    def _hear_file(self, message: SendFile | SendPart | DropFile | MakeFile) -> bytes:
+        """Take a message about a file; returns the answer, if there is one. On the event loop."""
+        if isinstance(message, SendFile) and not self._is_own:
+            return encoded(Refused("this lab is only shown"))
+        answer = self._files.hear(message)
+        return b"" if answer is None else encoded(answer)
 
 
 def _lit_message(symbol: str, robot: Robot, motion: Motion) -> LitMessage:

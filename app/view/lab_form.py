@@ -15,6 +15,7 @@ from onpath.app.channel.messages import (
     FormNeed,
     FormOption,
 )
+from onpath.app.common.newcomer import NEWCOMER
 from onpath.app.lab.commands import Identify, Pulse, Redo, StartOnPath, Undo
 from onpath.app.lab.commands.command_codec import message_of
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of
@@ -125,7 +126,7 @@ def refusals_in(snapshot: PageSnapshot) -> dict[str, str]:
 @lru_cache(maxsize=64)
 def _lab_form(robot: str, laws: tuple[tuple[str, str], ...], own: str, words: Words) -> FormMessage:
     fields = _fields(robot, laws, own, {}, words)
-    groups: dict[str, list[FormField]] = {name: [] for name in _LEVELS}
+    groups: dict[str, list[FormField]] = {name: [] for name in LEVELS}
     for name, field in fields.items():
         if group := _group_of(name, robot):
             groups[group].append(field)
@@ -142,7 +143,7 @@ def _lab_form(robot: str, laws: tuple[tuple[str, str], ...], own: str, words: Wo
                 states=states.get(name, ()),
                 rest=words("form.ideal") if name == "reality" else "",
             )
-            for name, level in _LEVELS.items()
+            for name, level in LEVELS.items()
             if groups[name]
         ),
     )
@@ -164,9 +165,8 @@ def _step_form(
     return FormMessage(place="step", groups=(group,) if shown else ())
 
 
-_LEVELS = {
+LEVELS = {
     "setup": "first",
-    "laws": "first",
     **dict.fromkeys(("hand", "gains", "along", "reality", "view", "robot"), "deeper"),
 }
 
@@ -183,15 +183,14 @@ def _group_of(name: str, robot: str) -> str:
 
 
 _OTHERS = {
-    **dict.fromkeys(("robot", "path", "file", "undo", "redo"), "setup"),
-    **{f"{part}{side}": "laws" for side in SIDES for part in ("", "typed_", "about_")},
-    **dict.fromkeys(("laws", "compare"), "laws"),
     **dict.fromkeys(("pulse", "start_on_path"), "hand"),
     "poles": "gains",
     "identify": "reality",
     **dict.fromkeys(DRAWINGS, "view"),
+    **dict.fromkeys(("robot", "path", "file", "undo", "redo", "laws", "compare"), ""),
+    **{f"{part}{side}": "" for side in SIDES for part in ("", "typed_", "about_")},
 }
-"""Group of each field that is no declared setting."""
+"""Group of each field that is no declared setting; assets/web/parts/setup.ts shows those of none."""
 
 
 def _fields(
@@ -203,7 +202,8 @@ def _fields(
 ) -> dict[str, FormField]:
     """All fields that a lab can have, by name, in the order of the form."""
     kind = ROBOTS[robot].parameters
-    known, usual, defaults = specs(kind), values_of(kind()), LabSettings()
+    known, defaults = specs(kind), LabSettings()
+    usual = {**values_of(kind()), **NEWCOMER}
     chosen = dict(laws)
     found: list[FormField] = [
         FormField(name="robot", kind="button", label=robot_label(robot, words)),

@@ -1626,7 +1626,6 @@ form-range = Möglich ist { $low } bis { $high }.
 form-differs = { $value } wurde nicht übernommen.
 form-use = Verwenden
 form-group_setup = Aufbau
-form-group_laws = Gesetze
 form-group_hand = Hand und Bremse
 form-group_gains = Verstärkungen
 form-group_along = Bewegung längs der Bahn

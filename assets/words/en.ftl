@@ -1218,7 +1218,6 @@ form-range = It can be from { $low } to { $high }.
 form-differs = { $value } was not taken.
 form-use = Use
 form-group_setup = Set-up
-form-group_laws = Laws
 form-group_hand = Hand and brake
 form-group_gains = Gains
 form-group_along = Motion along the path

@@ -1,5 +1,7 @@
 // The engine of a page of the lab: its server simulates, and tells it through a websocket of the page's own.
 
+import type { FormMessage } from "../core/form_data"
+import { RemoteSettings } from "./settings"
 import { sampleAt, type Act, type Change, type Engine, type PathShape, type RowData, type Sample, type SideSample, type SideText, type State, type Vector } from "../core/engine"
 import { AT_JOINTS } from "../core/symbols"
 import { Files } from "./files"
@@ -131,6 +133,10 @@ export class RemoteEngine implements Engine {
     /** Whether the lab is of another version. */
     outdated = false
     readonly files = new Files(message => this.send(message))
+    readonly settings = new RemoteSettings(message => this.send(message))
+    /** The settings that are shown; null until the lab has told them, which it does if it is asked. */
+    form: FormMessage | null = null
+    private asksForm = false
     /** The open step of a lesson, and what is measured in it; null until they are known. */
     lesson: LessonMessage | null = null
     measured: MeasuredMessage | null = null
@@ -155,6 +161,12 @@ export class RemoteEngine implements Engine {
 
     /** `plain`: whether the page draws in software. */
     constructor(private readonly dark: () => boolean, private readonly plain: boolean) {}
+
+    /** Have the lab tell its form and the values of its fields. */
+    askForm(): void {
+        if (!this.asksForm) this.send({ is: "fields" })
+        this.asksForm = true
+    }
 
     /** Whether the websocket is open. */
     get isOpen(): boolean { return this.socket?.readyState === WebSocket.OPEN }
@@ -320,6 +332,8 @@ export class RemoteEngine implements Engine {
             if (this.symbol) this.send({ is: "light", symbol: this.symbol })
             if (this.plotted.length) this.send({ is: "plots", fields: [...this.plotted] })
             this.files.restart()
+            if (this.asksForm) this.send({ is: "fields" })
+            this.settings.connected()
             for (const { what } of this.asked) this.send({ is: "ask", what })
             this.tell("state")
         }
@@ -342,6 +356,12 @@ export class RemoteEngine implements Engine {
         } else if (message.is === "measured") {
             this.measured = message
             this.tell("measured")
+        } else if (message.is === "form") {
+            this.form = message
+            this.tell("form")
+        } else if (message.is === "values") {
+            this.settings.hear(message)
+            this.tell("values")
         } else if (message.is === "file" || message.is === "download" || message.is === "part") this.files.hear(message)
         else if (message.is === "compared" || message.is === "told") for (const listener of this.news) listener(message)
         else if (message.is === "words") {
@@ -350,7 +370,7 @@ export class RemoteEngine implements Engine {
         } else if (message.is === "lab") keepLab(message.code)
         else if (message.is === "store") keep(message.key, message.value)
         else if (message.is === "refused") console.warn(`refused: ${message.why}`)
-        else if (message.is !== "alive" && message.is !== "wait" && message.is !== "form" && message.is !== "values") this.answered(message)
+        else if (message.is !== "alive" && message.is !== "wait") this.answered(message)
     }
 
     private answered(answer: Answer): void {

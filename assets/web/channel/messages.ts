@@ -106,6 +106,20 @@ export interface Skip {
     is: "skip"
 }
 
+/** Tell the form and the values of its fields, from now on. */
+export interface AskForm {
+    is: "fields"
+}
+
+/** A field of the form has another value. */
+export interface SetField {
+    is: "set"
+    name: string
+    value: boolean | number | string
+    /** larger than that of all messages before; see `ValuesMessage.heard`. */
+    number: number
+}
+
 /** Tell where a symbol is found on the robots, until another one is asked for. */
 export interface Light {
     is: "light"
@@ -276,6 +290,8 @@ export type PageMessage =
     | Dark
     | Resized
     | Skip
+    | AskForm
+    | SetField
     | Light
     | Plot
     | SendFile

@@ -1,25 +1,23 @@
 // The settings of a lab: what it has told of them, and what is on its way to it.
 
 import type { ValuesMessage } from "../core/form_data"
+import type { SetField } from "./messages"
 
 const PERIOD = 110 // [ms], at least, between two messages of a setting: a drag of 5 s sends at most 50
 const AGAIN = 1000 // [ms] after which a message that was not answered is sent again
 
 type Value = ValuesMessage["values"][string]
 
-/** `number` grows from message to message. */
-export interface SetMessage { is: "set"; name: string; value: Value; number: number }
-
 export class RemoteSettings {
     private values: Record<string, Value> = {}
     private refusals: Record<string, string> = {}
     private readonly next = new Map<string, Value>() // to be sent
     private readonly last = new Map<string, number>() // when a setting was sent
-    private readonly sent = new Map<string, SetMessage>() // and not answered
+    private readonly sent = new Map<string, SetField>() // and not answered
     private number = 0
     private timer: ReturnType<typeof setTimeout> | undefined
 
-    constructor(private readonly send: (message: SetMessage) => void) {}
+    constructor(private readonly send: (message: SetField) => void) {}
 
     readonly value = (name: string): Value | undefined => this.values[name]
     readonly refused = (name: string): string => this.refusals[name] ?? ""
@@ -62,7 +60,7 @@ export class RemoteSettings {
             if (due(name, PERIOD) > 0) continue
             this.next.delete(name)
             this.last.set(name, now)
-            const message: SetMessage = { is: "set", name, value, number: ++this.number }
+            const message: SetField = { is: "set", name, value, number: ++this.number }
             this.sent.set(name, message)
             this.send(message)
         }

@@ -7,9 +7,11 @@ import { retone } from "../core/ink"
 import { keptLook } from "../core/look"
 import { said, significant, written, type Texts } from "../core/words"
 import { RemoteEngine } from "../channel/channel"
+import type { Command } from "../channel/messages"
 import { Connection } from "../channel/connection"
 import { Column } from "../parts/column"
 import { Downloads } from "../parts/downloads"
+import { Form } from "../parts/form"
 import { Lens } from "../parts/lens"
 import { OverStage } from "../parts/over_stage"
 import { Strip } from "../parts/strip"
@@ -49,6 +51,7 @@ class Face {
     private canvas: HTMLElement | null = null
     private width = 0 // of the canvas, [px]
     private height = 0
+    private form: Form | null = null
     private resizing = 0
     private read = 0
 
@@ -78,6 +81,14 @@ class Face {
         this.shell = OURS ? new Shell(engine, texts, signal, reopen) : null
         document.body.prepend(this.stage.element, this.voice.element, this.column.element, this.element, ...this.shell?.elements ?? [],
             new Downloads(engine.files, texts, signal).element)
+        if (OURS) {
+            engine.askForm()
+            engine.on(change => {
+                if (change === "form") this.showForm()
+                else if (change === "values") this.form?.update()
+            }, signal)
+            this.showForm()
+        }
         document.documentElement.classList.toggle("op-ours", OURS)
         document.documentElement.classList.add("op-stripped")
         engine.on(change => {
@@ -100,7 +111,23 @@ class Face {
         this.column.hear(lesson)
         const step = lesson.lesson ? lesson.steps[lesson.index] : undefined
         this.strip.follows(step)
+        this.showForm()
         this.transport.subdued = step?.kind === "run" && !lesson.notes?.played[String(lesson.index)]
+    }
+
+    /** Show the settings: those of the lab in the panel, those of a step in its card. */
+    private showForm(): void {
+        const { engine, texts, shell } = this, data = engine.form, { settings } = engine
+        if (!data || !shell) return
+        if (this.form) this.form.show(data)
+        else
+            this.form = new Form(data, {
+                texts, value: settings.value, refused: settings.refused, waits: settings.waits,
+                set: (name, value) => settings.set(name, value),
+                act: ({ name, act }) => (act ? engine.send(act as unknown as Command) : shell.go(name)),
+            }, this.ended.signal)
+        const { element } = this.form
+        if (data.place === "lab" || !this.column.offer(element)) shell.panel.body.append(element)
     }
 
     /** Remove it; returns what was open. */

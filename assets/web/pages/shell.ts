@@ -113,7 +113,9 @@ export class Shell {
         })
     }
 
-    private go(place: string): void {
+    /** Go to what a button names. */
+    go(place: string): void {
+        if (place === "robot") return void this.open("robots")
         if (place === "controls") this.panel.show(!this.panel.isOpen)
         else if (place === "search") this.search.open()
         else void this.open(place as Opens)

@@ -183,6 +183,12 @@ export class Column implements Robots {
     }
 
     /** Replace the parts of a section that have changed; the focus stays where it is. */
+    /** Put the settings into the open step; returns whether there is one. */
+    offer(form: HTMLElement): boolean {
+        this.view?.offer(form)
+        return this.view !== null
+    }
+
     private renew(name: string, before: string[], parts: HTMLElement[], view: StepView | null): void {
         const words = this.sections[name]!.querySelector(".words")!
         const known = new Map<string, HTMLElement[]>() // the elements made of each part

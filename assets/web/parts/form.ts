@@ -92,12 +92,14 @@ export class Form implements RowForm {
 
     /** Whether a field with these conditions acts. */
     acts(needs: FormField["needs"] = []): boolean {
+        const value = (name: string) => this.rows.get(name)?.value ?? this.host.value(name)
         const meets = ({ name, of }: FormNeed) => {
-            const value = this.rows.get(name)?.value ?? this.host.value(name)
-            if (value === undefined) return true
-            return of?.length ? of.some(each => same(each, value)) : Boolean(value) && value !== "off"
+            const given = value(name)
+            if (given === undefined) return false
+            return of?.length ? of.some(each => same(each, given)) : Boolean(given) && given !== "off"
         }
-        return needs.every(each => each.some(meets))
+        // What nobody knows here is as the author of the place wants it.
+        return needs.every(each => each.some(meets) || each.every(({ name }) => value(name) === undefined))
     }
 
     /** Bring a field into view, with the focus on it; returns whether the form has it. */

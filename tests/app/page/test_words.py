@@ -24,6 +24,7 @@ from onpath.app.page.panels.keys import help_text
 from onpath.app.page.teaching.teacher_panel import TeacherPanel
 from onpath.app.storage.records import NotKept
 from onpath.app.view.keys import KEYS
+from onpath.app.view.lab_form import LEVELS, SECTIONS
 from onpath.assets.messages import catalogue, identifier, languages
 from onpath.lessons.labels import (
     option_label,
@@ -67,6 +68,7 @@ PAGE = sorted(
     ]
 )
 KEYS_MADE = (
+    *("form.group_", "form.section_"),
     "start.",
     *(
         "quantity.",
@@ -258,6 +260,8 @@ def test_what_the_program_names_has_words(words: Words) -> None:
         assert key.does(words) in help_text(words) and key.shown(words) in help_text(words)
     for channel in channels(FiveBarParameters()):
         assert words(f"gains.{channel.name}")
+    assert all(words(f"form.group_{group}") for group in LEVELS)
+    assert all(words(f"form.section_{section}") for section in (*SECTIONS, "model"))
 
 
 def keys_of(entry: RobotEntry) -> Iterator[str]:

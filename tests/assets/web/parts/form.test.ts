@@ -2,7 +2,8 @@ import { found, press, TEXTS } from "../page"
 import { pass, time } from "../clock"
 import assert from "node:assert/strict"
 import { test } from "node:test"
-import { RemoteSettings, type SetMessage } from "../../../../assets/web/channel/settings"
+import type { SetField } from "../../../../assets/web/channel/messages"
+import { RemoteSettings } from "../../../../assets/web/channel/settings"
 import type { FormField, FormMessage, ValuesMessage } from "../../../../assets/web/core/form_data"
 import type { FormHost, Value } from "../../../../assets/web/parts/fields"
 import { Form } from "../../../../assets/web/parts/form"
@@ -201,8 +202,8 @@ test("no text becomes an element", () => {
  * is not lost. */
 class FarLab {
     readonly values: Record<string, Value> = { ...BEGIN }
-    readonly arrived: { at: number; message: SetMessage }[] = []
-    private readonly up: { at: number; message: SetMessage }[] = []
+    readonly arrived: { at: number; message: SetField }[] = []
+    private readonly up: { at: number; message: SetField }[] = []
     private readonly down: { at: number; message: ValuesMessage }[] = []
     private readonly heard: Record<string, number> = {}
     private told = ""
@@ -244,7 +245,7 @@ class FarLab {
         }
     }
 
-    private take(message: SetMessage): void {
+    private take(message: SetField): void {
         this.values[message.name] = message.value
         this.heard[message.name] = message.number
         this.arrived.push({ at: time(), message })

@@ -1,0 +1,96 @@
+"""The form of a lab: what is in it, and what a page that sets a field is told."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from onpath.app.channel.messages import AskForm, FormMessage, SetField, ValuesMessage
+from onpath.app.lab.lab import Lab
+from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
+from onpath.app.page.overlays import Switches
+from onpath.app.server.page_form import PageForm
+from onpath.app.view.forms import ELSEWHERE
+from onpath.app.view.lab_form import form_of, values_in
+from onpath.lessons.action_schema import StepSetup
+from onpath.lessons.course import NO_LESSONS
+from onpath.lessons.words import ENGLISH, Words
+from onpath.models.closed_loop.lab_settings import SETTINGS
+from onpath.models.control.laws.registry import OWN_GAINS
+from onpath.models.control.settable import specs
+from onpath.models.systems.catalogue import ROBOTS
+from tests.support.lab import loop_cache
+
+
+def fields(form: FormMessage) -> list[Any]:
+    return [field for group in form.groups for field in group.fields]
+
+
+@pytest.mark.parametrize("robot", ROBOTS)
+def test_a_lab_has_all_that_can_act_once_and_in_words(robot: str) -> None:
+    lab = Lab(loop_cache(), ROBOTS[robot])
+    snapshot = take_page_snapshot(lab, 1.0)
+    known = specs(ROBOTS[robot].parameters)
+    for language in ("en", "de"):
+        words = Words(language)
+        found = fields(form_of(snapshot, None, words))
+        names = [field.name for field in found]
+        assert len(names) == len(set(names))
+        values = values_in(snapshot, {}, (), words)
+        needs = [{one.name for one in each} for field in found for each in field.needs]
+        assert all(each & {*values} for each in needs)
+        drawn = {field.name for field in found if field.kind == "switch"} - {*SETTINGS}
+        told = {field.name for field in found if field.kind != "button"}
+        assert told - drawn <= {*values} | {*SETTINGS}
+        assert all(field.label for field in found if field.kind != "note")
+        declared = {*known, *SETTINGS} - {*OWN_GAINS, *ELSEWHERE, "larger", "K4"}
+        assert declared <= {*names}, declared - {*names}
+    assert form_of(snapshot, None, words) is form_of(snapshot, None, words)  # told once
+
+
+def test_a_step_has_what_it_names_and_marks_its_values() -> None:
+    snapshot = take_page_snapshot(Lab(loop_cache()), 1.0)
+    setup = StepSetup(controls=("K1", "hold", "wall", "alpha"), set={"K1": 900.0})
+    found = {field.name: field for field in fields(form_of(snapshot, setup, ENGLISH))}
+    assert list(found) == ["K1", "wall", "wall_z1", "wall_z2", "wall_angle"]
+    assert (found["K1"].mark, found["K1"].default) == (900.0, 400.0)
+
+
+def test_a_page_hears_of_a_value_when_it_counts_and_of_what_has_changed() -> None:
+    lab = Lab(loop_cache())
+    form, switches = PageForm(lab.post), Switches()
+    page: Any = SimpleNamespace(switches=switches)
+
+    def news() -> list[Any]:
+        found = list(form.news(take_page_snapshot(lab, 1.0), page, NO_LESSONS, ENGLISH))
+        for each in found:
+            if isinstance(each, ValuesMessage):
+                each.values.pop("poles", None)
+        return found
+
+    form.hear(AskForm(), True)
+    first = news()
+    assert [type(each) for each in first] == [FormMessage, ValuesMessage]
+    assert news() == []
+    form.hear(SetField("K1", 905.0, 7), True)
+    assert news() == []  # it does not count yet
+    lab.drain()
+    assert news() == [ValuesMessage({"K1": 905.0}, {}, {"K1": 7})]
+    form.hear(SetField("K1", 9e6, 8), True)
+    lab.drain()
+    (told,) = news()
+    assert told.values == {} and "2500" in told.refused["K1"] and told.heard == {"K1": 8}
+    form.hear(SetField("K1", 400.0, 9), True)
+    lab.drain()
+    assert news() == [ValuesMessage({"K1": 400.0}, {"K1": ""}, {"K1": 9})]
+    form.hear(SetField("tube", True, 10), True)
+    assert news()[0].values == {"tube": True} and switches.tube
+    form.hear(SetField("K2", 55.0, 11), False)  # another lab is shown
+    lab.drain()
+    assert news() == [ValuesMessage({}, {}, {"K2": 11})]
+    lab.frozen = True
+    form.hear(SetField("K2", 55.0, 12), True)
+    lab.drain()
+    assert news() == [ValuesMessage({}, {}, {"K2": 12})]
