@@ -190,7 +190,7 @@ _OTHERS = {
     **dict.fromkeys(("robot", "path", "file", "undo", "redo", "laws", "compare"), ""),
     **{f"{part}{side}": "" for side in SIDES for part in ("", "typed_", "about_")},
 }
-"""Group of each field that is no declared setting; assets/web/parts/setup.ts shows those of none."""
+"""Group of each field that is no declared setting; parts/setup.ts shows those of none."""
 
 
 def _fields(
