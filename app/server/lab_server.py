@@ -12,6 +12,8 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
+import viser
+
 from onpath.app.classroom.classroom import Classroom
 from onpath.app.common.access_codes import normalised
 from onpath.app.common.end_signals import END_SIGNALS
@@ -82,15 +84,16 @@ class LabServer:
     ) -> None:
         self._host, self._loop_cache, self._options = host, loop_cache, options
         self._room = AdmissionQueue(options.most_clients)
-        self._course = lessons = options.course or built_in_course()
+        self._course = options.course or built_in_course()
         self.thread = SimulationThread()
         self._watchdog, self._leases = Watchdog(options.hang_seconds), None  # see `_start`
         self.visits = Visits(self._came, self._furnish, leave=lambda it: self.registry.leave(it))
-        self.server = make_server(
+        make_server(
             host,
             port,
             label="OnPath",
             channel=self.visits.channel,
+            prepare=self._prepare,
             scripts=own_part(),
             health=partial(metrics_json, self.thread),
             trouble=lambda: self._watchdog.trouble,
@@ -101,12 +104,16 @@ class LabServer:
             unix_socket=options.unix_socket,
             course_url=options.course_url,
         )
+
+    def _prepare(self, server: viser.ViserServer) -> None:
+        """Make everything that the first page needs."""
+        self.server, options = server, self._options
         robot, records = options.robot, options.records
         self.registry = LabRegistry(
             self.thread,
             lambda: new_lab(
-                loop_cache,
-                lessons,
+                self._loop_cache,
+                self._course,
                 robot,
                 path=options.path,
                 law=options.law,
@@ -119,8 +126,8 @@ class LabServer:
             self._store_labs(records)
         self._classes = ClassDirectory(options.classrooms, self._class_service)
         self._newcomers = BuildQueue()
-        set_initial_camera(self.server, stage_of(robot.make(robot.parameters())))
-        self.visits.attend(self.server)
+        set_initial_camera(server, stage_of(robot.make(robot.parameters())))
+        self.visits.attend(server)
         self._start()
 
     def _store_labs(self, records: Records) -> None:

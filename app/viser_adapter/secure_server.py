@@ -75,6 +75,7 @@ def make_server(
     trouble: Callable[[], str] = str,
     elsewhere: Callable[[str], bool] = lambda _: False,
     channel: DataChannel | None = None,
+    prepare: Callable[[viser.ViserServer], None] = lambda _: None,
     course_url: str = "",
     scripts: bytes = b"",
     verbose: bool = False,
@@ -91,6 +92,7 @@ def make_server(
         health, trouble: see `RequestFilter`.
         elsewhere: whether another process serves a prefix; a websocket there is answered 502.
         channel: the data channels of the pages, if they have any.
+        prepare: called with the server; all requests wait until it has returned.
         course_url: see `page_scripts.words`.
         scripts: elements for the head of the page; see `add_scripts`.
 
@@ -125,6 +127,7 @@ def make_server(
         server = viser.ViserServer(host=shown, port=port, label=label, verbose=verbose)
     listener.listen(BACKLOG)  # so many may wait in the system, even if fewer are accepted at once
     harden(server, limits=limits)
+    prepare(server)
     door.open = True
     return server
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import gc
+import threading
 import time
 import weakref
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from functools import partial
 from typing import Any
@@ -323,6 +325,24 @@ def test_a_server_without_pages_takes_no_greeting() -> None:
         tab.send("0")
         assert code_of(closing(tab)) == NO_GREETING
     server.stop()
+
+
+def test_an_early_page_waits_until_its_server_is_prepared() -> None:
+    prepared, opened = threading.Event(), list[bool]()
+
+    def come(port: int) -> None:
+        with connect(f"ws://127.0.0.1:{port}", subprotocols=[Subprotocol(SUBPROTOCOL)]):
+            opened.append(prepared.is_set())
+
+    def prepare(server: viser.ViserServer) -> None:
+        page.submit(come, server.get_port())
+        time.sleep(0.3)  # in which the page would be let in
+        prepared.set()
+
+    with ThreadPoolExecutor() as page:
+        server = make_server(port=0, prepare=prepare)
+    server.stop()
+    assert opened == [True]
 
 
 def test_visers_own_websocket_takes_no_greeting(pages: Pages) -> None:
