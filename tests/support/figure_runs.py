@@ -25,7 +25,7 @@ from onpath.models.paths.distance import path_distance
 from onpath.models.systems.parameters import time_step
 
 Act = tuple[str, Any]
-"""("advance", ticks), ("hold", on), ("set", (slider, value)), ("choose", path), ("reset", None),
+"""("advance", ticks), ("hold", on), ("set", {name: value}), ("choose", path), ("reset", None),
 ("pull", metres to the right and up in the picture, or None), ("move", (point, its new place)),
 ("drop", None), ("change", (side, law))."""
 
@@ -108,8 +108,8 @@ class PythonFigure:
         if what == "advance":
             self.editor.advance(value * time_step(self.figure.parameters))
         if what in ("advance", "hold", "set", "pull", "change"):
-            for number, side in enumerate(self.sides):
-                self._act_on(side, number, what, value)
+            for index, side in enumerate(self.sides):
+                self._act_on(side, index, what, value)
         elif what == "move":
             with suppress(CodedError):  # there is no such curve
                 self.editor.drag(value[0], np.array(value[1]))
@@ -120,18 +120,18 @@ class PythonFigure:
             self._begin()
         self.held = value if what == "hold" else self.held
 
-    def _act_on(self, side: PythonSide, number: int, what: str, value: Any) -> None:
+    def _act_on(self, side: PythonSide, index: int, what: str, value: Any) -> None:
         if what == "advance":
             side.curve = self.editor.curve
             side.advance(value)
         elif what == "hold" and value != self.held:
             side.hold(value)
         elif what == "set":
-            name = self.figure.sliders[value[0]]
-            side.parameters = changed(side.parameters, name, value[1])
+            for name, number in value.items():
+                side.parameters = changed(side.parameters, name, number)
         elif what == "pull":
             side.pull(value)
-        elif what == "change" and number == value[0]:
+        elif what == "change" and index == value[0]:
             side.change(self.figure.every_law[value[1]])
 
     def _begin(self) -> None:

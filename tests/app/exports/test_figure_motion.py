@@ -34,7 +34,6 @@ EDITED = 1e-10
 ACT = """([what, value]) => {
     const {simulation} = onpath
     if (what === "advance") onpath.advance(value)
-    else if (what === "set") simulation.set(...value)
     else if (what === "move") simulation.followed.move(...value)
     else if (what === "drop") simulation.followed.finish()
     else if (what === "change") simulation.sides[value[0]].change(value[1])
@@ -95,7 +94,7 @@ def opened(file: Path) -> Iterator[Opened]:
     opened.page.close()
 
 
-BEGIN: list[Act] = [("choose", 0), ("set", [0, 2.0]), ("set", [1, 400.0])]
+BEGIN: list[Act] = [("choose", 0), ("set", {"speed": 2.0, "K1": 400.0})]
 PULLED: list[Act] = [
     *BEGIN,
     *(("advance", 500), ("pull", [0.01, 0.02]), ("advance", 300), ("pull", [0.02, 0.0])),
@@ -114,8 +113,8 @@ def acts() -> st.SearchStrategy[list[Act]]:
     each = (
         st.tuples(st.just("advance"), st.integers(1, 600)),
         st.tuples(st.just("hold"), st.booleans()),
-        st.tuples(st.just("set"), st.tuples(st.just(0), st.floats(-4, 4))),
-        st.tuples(st.just("set"), st.tuples(st.just(1), st.floats(100, 900))),
+        st.tuples(st.just("set"), st.fixed_dictionaries({"speed": st.floats(-4, 4)})),
+        st.tuples(st.just("set"), st.fixed_dictionaries({"K1": st.floats(100, 900)})),
         st.tuples(st.just("choose"), st.integers(0, len(PATHS) - 1)),
         st.tuples(st.just("reset"), st.none()),
         st.tuples(st.just("pull"), st.one_of(st.none(), st.tuples(coordinate, coordinate))),
@@ -149,7 +148,7 @@ def test_the_same_inputs_give_the_trajectory_of_python(file: Path, script: list[
 
 
 def test_it_is_the_run_of_simulate(opened: Opened) -> None:
-    opened.do(("choose", 0), ("set", [0, 2.0]), ("set", [1, 400.0]), ("advance", 1000))
+    opened.do(("choose", 0), ("set", {"speed": 2.0, "K1": 400.0}), ("advance", 1000))
     opened.do(("hold", True), ("advance", 1000), ("hold", False), ("advance", 1000))
     found = np.array(opened.number(LOGGED))
     for law, row in zip(LAWS, found, strict=True):
