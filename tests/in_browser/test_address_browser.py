@@ -21,7 +21,7 @@ from onpath.app.lab.commands import SetLanguage
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
 from onpath.app.server.server_options import ServerOptions
-from tests.support.browser import COARSER, Tab, wait_for
+from tests.support.browser import COARSER, Tab
 from tests.support.checkout import ROOT
 from tests.support.free_lab import fresh
 from tests.support.lab_process import free_ports
@@ -111,12 +111,12 @@ def test_no_address_to_copy_names_the_server(
         address = tab.page.url
         kept = [] if path.startswith("/c/") else ["fixedDpr"]  # a place has no query
         assert parameters(tab) == kept and address.startswith(f"{server.address}{path}")
-        before, left = tab.client, tab.display
+        picture = tab.page.locator(f"[data-page]:not([data-client='{tab.client.client_id}'])")
+        assert picture.count() == 0
         server.server.get_event_loop().call_soon_threadsafe(
-            server.server._websock_server._live_connections[before.client_id].transport.abort
+            server.server._websock_server._live_connections[tab.client.client_id].transport.abort
         )
-        wait_for(lambda: tab.scheduled.display not in (None, left))
-        tab.page.locator("[data-page]").first.wait_for(state="attached")
+        picture.wait_for(state="attached")  # another connection's
         assert tab.page.url == address
 
 

@@ -331,7 +331,8 @@ def told(server: LabServer) -> Told:
 
 def document() -> str:
     head = (our_scripts() + own_part()).decode()
-    return f"<!doctype html><html><head>PLAN{head}</head><body><div id=root></div></body></html>"
+    head = f"<meta charset=utf-8>PLAN{head}"
+    return f"<!doctype html><html><head>{head}</head><body><div id=root></div></body></html>"
 
 
 class Visit:
