@@ -14,7 +14,6 @@ import msgspec
 from msgspec import UNSET, Meta, Struct, UnsetType
 
 from onpath.app.channel.sheet_messages import (
-    Choices,
     Compared,
     CompareSheet,
     DisplaySheet,
@@ -506,7 +505,9 @@ class FormField(Struct, frozen=True, omit_defaults=True, kw_only=True):
         default: to which one goes back; None: there is no way back.
         mark: the value of a lesson's step.
         act: the command that a button sends.
-        tone: of a note or a button: "main", "warning" or none.
+        tone: of a note or a button: "main", "warning" or none; of a note also the side whose colour
+            it has: "of_left" or "of_right".
+        picture: the address of a button's picture.
         section: a heading above all fields of the same section.
     """
 
@@ -529,6 +530,7 @@ class FormField(Struct, frozen=True, omit_defaults=True, kw_only=True):
     act: Mapping[str, Any] | None = None
     tone: str = ""
     section: str = ""
+    picture: str = ""
 
 
 class FormGroup(Struct, frozen=True, omit_defaults=True, kw_only=True):
@@ -551,15 +553,10 @@ class FormGroup(Struct, frozen=True, omit_defaults=True, kw_only=True):
 class FormMessage(
     Struct, frozen=True, omit_defaults=True, kw_only=True, tag_field="is", tag="form"
 ):
-    """All fields of a place.
-
-    Attributes:
-        lacks: what the place lacks, in one line; empty if nothing.
-    """
+    """All fields of a place; without groups, there is no such place now."""
 
     place: Literal["lab", "step", "figure"]
     groups: tuple[FormGroup, ...]
-    lacks: str = ""
 
 
 class ValuesMessage(Struct, frozen=True, omit_defaults=True, tag_field="is", tag="values"):
@@ -660,7 +657,6 @@ LabMessage = (
     | Alive
     | Refused
     | RobotSheet
-    | Choices
     | LawSheet
     | CompareSheet
     | KeepSheet

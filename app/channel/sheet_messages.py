@@ -9,9 +9,7 @@ from msgspec import Meta, Struct
 
 # From the page
 
-SheetName = Literal[
-    "robots", "laws", "compare", "keep", "lessons", "help", "display", "index", "choices"
-]
+SheetName = Literal["robots", "laws", "compare", "keep", "lessons", "help", "display", "index"]
 """What a page can open, and the index of its search."""
 
 
@@ -277,23 +275,6 @@ class ComparedLaw(Struct, frozen=True, kw_only=True):
     beyond: str
     step: float
     curve: list[float]
-
-
-class PathOutline(Struct, frozen=True, kw_only=True):
-    """A path to choose; `outline` is a path of SVG in a square from -50 to 50, up is negative."""
-
-    name: str
-    label: str
-    outline: str
-
-
-class Choices(Struct, frozen=True, kw_only=True, tag_field="is", tag="choices"):
-    """What the robot is, what it can follow, under which laws, and a law to begin typing with."""
-
-    robot: RobotCard
-    paths: list[PathOutline]
-    laws: list[LawChoice]
-    own: str
 
 
 class Compared(Struct, frozen=True, kw_only=True, tag_field="is", tag="compared"):

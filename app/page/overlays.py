@@ -1,7 +1,7 @@
 """Optional drawings in the scene: labels, tube, coordinate curves, rank test, and more.
 
-Like the shading of the singular zone, they belong to the page alone: they send no command and have
-no state in the lab, so that they also work on a teacher's page that shows a student's lab.
+They belong to the page alone: they send no command and have no state in the lab, so that they also
+work on a teacher's page that shows a student's lab.
 """
 
 from __future__ import annotations
@@ -41,6 +41,8 @@ class Switches:
         rank: the rank test as a map.
         errors: both errors, to the timetable's point and to the path, as arrows.
         mass: the ellipse of the effective mass at the end-points.
+        zone: the shading of the singular zone.
+        start: the start of the next run, which can be dragged.
     """
 
     labels: bool = False
@@ -49,6 +51,8 @@ class Switches:
     rank: bool = False
     errors: bool = False
     mass: bool = False
+    zone: bool = False
+    start: bool = False
 
 
 class Drawn(Generic[Node]):

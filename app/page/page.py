@@ -109,6 +109,8 @@ class Page:
             self._scene.update_traces(snapshot)
             self._overlays.update(motion)
             self._overlays.follow(snapshot)
+            self._scene.show_singular_zone(self._switches.zone and self._robot.frame.p == 2)
+            self._scene.show_start(self._switches.start)
             self._frame_camera()
             self._follow_fold()
             for part in self._parts:

@@ -127,6 +127,7 @@ class PanelFactory:
             expanded: whether its folder is open at first, as when a lesson's step names the panel.
         """
         gui, words, post, exporter = self._gui, self._words, self._post, self._exporter
+        switches = self._overlays.switches
         make: dict[str, Callable[[], Part | None]] = {
             "path": lambda: PathChoice(gui, words, post, first),
             "editor": lambda: self._editor(first, expanded),
@@ -139,7 +140,7 @@ class PanelFactory:
             "flexible": lambda: self._flexible(first),
             "show": lambda: ShowPanel(gui, words, self._overlays),
             "wall": lambda: WallPanel(gui, words, post, first),
-            "start": lambda: StartPanel(gui, words, post, first=first, show=self._scene.show_start),
+            "start": lambda: StartPanel(gui, words, post, first=first, switches=switches),
             "identify": lambda: _silent(add_identify(gui, words, post)),
         }
         part = make[name]() if name in make else self._settings([name], first)
@@ -147,9 +148,6 @@ class PanelFactory:
         return [] if part is None else [part]
 
     def _editor(self, first: PageSnapshot, expanded: bool) -> Part:
-        def shade(visible: bool) -> None:
-            self._scene.show_singular_zone(visible)
-
         with self._gui.add_folder(self._words("controls.editor"), expand_by_default=expanded):
             return PathPanel(
                 self._gui,
@@ -157,7 +155,7 @@ class PanelFactory:
                 self._post,
                 first=first,
                 draw=self._draw,
-                show_zone=shade,
+                switches=self._overlays.switches,
                 files=self._files,
             )
 

@@ -152,10 +152,12 @@ class Scene:
 
     def show_singular_zone(self, visible: bool = True) -> None:
         """Shade the nearly singular points in the path's plane, or remove the shading."""
+        if visible == (self._zone is not None):
+            return
         if self._zone is not None:
             self._zone.remove()
             self._zone = None
-        if visible:
+        else:
             picture = self._stage.zone()
             self._zone = PlaneNodes(self._client.scene, "/zone", self._stage, picture)
 

@@ -17,18 +17,28 @@ from onpath.app.channel.messages import (
     SetField,
     ValuesMessage,
 )
-from onpath.app.lab.commands import ChooseLaw, ChoosePath, Set, TypeLaw
+from onpath.app.lab.commands import ChooseLaw, ChoosePath, PlacePoint, SelectPoint, Set, TypeLaw
 from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.lesson_view import NO_SETUP, LessonView
 from onpath.app.page.overlays import Switches
 from onpath.app.page.page import Page
-from onpath.app.view.lab_form import DRAWINGS, form_of, refusals_in, values_in
+from onpath.app.view.lab_form import (
+    NO_STEP,
+    SWITCHES,
+    form_of,
+    refusals_in,
+    switch_name,
+    values_in,
+)
 from onpath.lessons.action_schema import StepSetup
 from onpath.lessons.course import Course
 from onpath.lessons.words import Words
 from onpath.models.control.laws.own import OWN
 from onpath.models.control.sides import SIDES
+
+_DRAWN = {switch_name(name): name for name in SWITCHES}
+_COORDINATES = {"point_z1": "first", "point_z2": "second"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +54,7 @@ class _Mark(Command):
 
 
 class PageForm:
-    """The form of one page.
+    """The forms of one page: of its lab, and of the open step of a lesson.
 
     Args:
         post: of the lab that the page may change.
@@ -59,7 +69,8 @@ class PageForm:
 
     def restart(self) -> None:
         """Forget what the page knows, and what it has asked for."""
-        self.is_asked, self._form = False, None
+        self.is_asked = False
+        self._forms: tuple[FormMessage | None, ...] = None, None
         self._values, self._refused = dict[str, FieldValue](), dict[str, str]()
         self._told = dict[str, int]()
 
@@ -73,7 +84,7 @@ class PageForm:
             self.is_asked = True
             return
         name, value = message.name, message.value
-        if name in DRAWINGS or not is_own:
+        if name in _DRAWN or not is_own:
             self._own.append(message)
             return
         for command in self._commands(name, value):
@@ -92,6 +103,13 @@ class PageForm:
                 yield ChooseLaw(name, str(value))
         elif name == "path":
             yield ChoosePath(str(value))
+        elif name in ("point", *_COORDINATES):
+            if isinstance(value, str):
+                return
+            if name == "point":
+                yield SelectPoint(int(value) - 1 if value else None)
+            else:
+                yield PlacePoint(**{_COORDINATES[name]: float(value)})
         elif name.startswith("typed_"):
             yield TypeLaw(name.removeprefix("typed_"), str(value))
         else:
@@ -111,15 +129,18 @@ class PageForm:
         heard = dict(self._heard)
         while self._own:
             message = self._own.popleft()
-            if message.name in DRAWINGS:
-                setattr(switches, message.name, bool(message.value))
+            if message.name in _DRAWN:
+                setattr(switches, _DRAWN[message.name], bool(message.value))
             self._hear(message.name, message.number)
             heard[message.name] = message.number
-        form = form_of(snapshot, _setup(snapshot, course, words), words)
-        if form is not self._form:
-            self._form: FormMessage | None = form
-            yield form
-        drawn = {name: bool(getattr(switches, name)) for name in DRAWINGS}
+        setup = _setup(snapshot, course, words)
+        step = NO_STEP if setup is None else form_of(snapshot, setup, words)
+        forms = form_of(snapshot, None, words), step
+        for form, before in zip(forms, self._forms, strict=True):
+            if form is not before:
+                yield form
+        self._forms = forms
+        drawn = {name: bool(getattr(switches, name)) for name in SWITCHES}
         values = values_in(snapshot, drawn, self._typing, words)
         refused = refusals_in(snapshot)
         changed = {n: v for n, v in values.items() if self._values.get(n) != v}

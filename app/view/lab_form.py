@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from functools import lru_cache
-
-import numpy as np
 
 from onpath.app.channel.messages import (
     FieldValue,
@@ -16,18 +15,31 @@ from onpath.app.channel.messages import (
     FormOption,
 )
 from onpath.app.common.newcomer import NEWCOMER
-from onpath.app.lab.commands import Identify, Pulse, Redo, StartOnPath, Undo
+from onpath.app.lab.commands import (
+    AddPoint,
+    Identify,
+    Pulse,
+    Redo,
+    RemovePoint,
+    Reset,
+    ResetParameters,
+    StartOnPath,
+    Undo,
+)
 from onpath.app.lab.commands.command_codec import message_of
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of
 from onpath.app.view.forms import ELSEWHERE, drawing_field, fields_of, setting_field
+from onpath.app.view.laws import suitable
+from onpath.app.view.paths import outline, preset_label
+from onpath.app.view.robots import picture_of
 from onpath.lessons.action_schema import StepSetup
-from onpath.lessons.labels import path_label, robot_label
+from onpath.lessons.labels import robot_label, robot_text
 from onpath.lessons.sides import law_label, law_text, side_titles
+from onpath.lessons.vocabulary.names import DRAWINGS
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.lab_settings import SETTINGS, LabSettings
 from onpath.models.control.law_poles import channels_of
 from onpath.models.control.laws.own import OWN, PATH_FOLLOWING, is_text
-from onpath.models.control.laws.registry import LAWS
 from onpath.models.control.place import Place
 from onpath.models.control.settable import specs, values_of
 from onpath.models.control.sides import DEFAULT_LAWS, SIDES
@@ -35,9 +47,14 @@ from onpath.models.errors import Message
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import Parameters
+from onpath.models.systems.robots import Robot
 
-DRAWINGS = ("labels", "tube", "grid", "rank", "errors", "mass")
+SWITCHES = (*DRAWINGS, "zone", "start")
 """What a page can draw besides the robots: fields of `app.page.overlays.Switches`."""
+SHOWN = "show_"
+"""Before the name of one of them in the name of its field, if no lesson names it."""
+FARTHEST = 0.2  # [m], of a control point from the middle of the paths
+NO_STEP = FormMessage(place="step", groups=())
 GROUP_OF = {
     **dict.fromkeys(("touch", "wall", "start"), "hand"),
     **dict.fromkeys(("basic", "robot", "path"), "robot"),
@@ -47,7 +64,12 @@ GROUP_OF = {
     "view": "view",
 }
 """Group of a declaration -> group of the form."""
-FIRST = ("speed",)
+FIRST = (
+    *("robot", "path", "draw", "file", "undo", "redo", "speed"),
+    *(f"{part}{side}" for side in SIDES for part in ("", "typed_", "about_")),
+    *("laws", "compare", "keep"),
+)
+"""Fields that are seen at once, in their order."""
 SECTIONS = {
     "motors": ("torque_limit", "at_limit", "at_limit_for", "torque_step"),
     "sensors": (
@@ -68,9 +90,14 @@ CONTROLS = {
     "path": ("path", "rise"),
     "laws": tuple(name for side in SIDES for name in (side, f"typed_{side}")),
     "wall": tuple(name for name, each in SETTINGS.items() if each.spec.group == "wall"),
-    "start": tuple(name for name, each in SETTINGS.items() if each.spec.group == "start"),
+    "start": (
+        "show_start",
+        *(name for name, each in SETTINGS.items() if each.spec.group == "start"),
+        *("reset", "start_on_path"),
+    ),
     "flexible": ("output", "alpha", "larger"),
     "show": DRAWINGS,
+    "editor": ("draw", "file", "undo", "redo", "add", "remove", "point", "point_z1", "point_z2"),
     "gains": ("speed", "K1", "K2", "K3", "K4", "K5", "poles"),
 }
 """Controls of a lesson's step that stand for several fields."""
@@ -82,12 +109,28 @@ def form_of(snapshot: PageSnapshot, setup: StepSetup | None, words: Words) -> Fo
     Args:
         setup: of the open step.
     """
+    edit = snapshot.edit
+    own = "" if edit.name in presets() else edit.name
     laws = tuple(snapshot.run.laws.items())
-    own = "" if snapshot.edit.name in presets() else snapshot.edit.name
+    lab = _Lab(robot=snapshot.key.robot, laws=laws, path=own, points=len(edit.points))
     if setup is None:
-        return _lab_form(snapshot.key.robot, laws, own, words)
-    marks = tuple(setup.set.items())
-    return _step_form(snapshot.key.robot, laws, own, setup.controls, marks, words)
+        return _lab_form(lab, words)
+    return _step_form(lab, setup.controls, tuple(setup.set.items()), words)
+
+
+@dataclass(frozen=True, slots=True)
+class _Lab:
+    """On what the fields of a lab depend.
+
+    Attributes:
+        path: the name of a path of one's own; empty if it is a preset.
+        points: number of its control points.
+    """
+
+    robot: str
+    laws: tuple[tuple[str, str], ...]
+    path: str
+    points: int
 
 
 def values_in(
@@ -96,21 +139,26 @@ def values_in(
     """The values of all fields.
 
     Args:
-        drawn: which of `DRAWINGS` are switched on.
+        drawn: which of `SWITCHES` are switched on.
         typing: sides for which a law is being typed.
     """
     laws, settings = snapshot.run.laws, snapshot.settings
-    values: dict[str, FieldValue] = {**snapshot.parameters, **drawn}
+    values: dict[str, FieldValue] = {**snapshot.parameters}
+    values |= {switch_name(name): on for name, on in drawn.items()}
     for name in SETTINGS:
         if name not in ELSEWHERE:
             values[name] = getattr(settings, name)
     values["path"] = snapshot.edit.name
-    values["robot"] = robot_label(snapshot.key.robot, words)
+    selected, points = snapshot.edit.selected, snapshot.edit.points
+    values |= {"point": 0, "point_z1": 0.0, "point_z2": 0.0}
+    if selected is not None and selected < len(points):
+        values["point"] = selected + 1
+        values["point_z1"], values["point_z2"] = map(float, points[selected])
     for side, law in laws.items():
         typed = is_text(law)
         values[side] = OWN if typed or side in typing else law
         values[f"typed_{side}"] = (law if typed else PATH_FOLLOWING).replace("; ", "\n")
-        values[f"about_{side}"] = "" if typed else law_text(law, words)
+        values[f"about_{side}"] = "" if values[side] == OWN else law_text(law, words)
     places = tuple(snapshot.places.of.items())
     values["poles"] = _settling(parameters_of(snapshot), tuple(laws.items()), places, words)
     return values
@@ -123,13 +171,19 @@ def refusals_in(snapshot: PageSnapshot) -> dict[str, str]:
     return {**refused, **typed}
 
 
+def switch_name(drawing: str) -> str:
+    """The name of the field that switches something that is drawn."""
+    return drawing if drawing in DRAWINGS else f"{SHOWN}{drawing}"
+
+
 @lru_cache(maxsize=64)
-def _lab_form(robot: str, laws: tuple[tuple[str, str], ...], own: str, words: Words) -> FormMessage:
-    fields = _fields(robot, laws, own, {}, words)
+def _lab_form(lab: _Lab, words: Words) -> FormMessage:
+    fields = _fields(lab, {}, words)
     groups: dict[str, list[FormField]] = {name: [] for name in LEVELS}
+    groups["setup"] = [fields[name] for name in FIRST if name in fields]
     for name, field in fields.items():
-        if group := _group_of(name, robot):
-            groups[group].append(field)
+        if name not in FIRST:
+            groups[_group_of(name, lab.robot)].append(field)
     reality = [each.name for each in groups["reality"] if each.on is not None]
     states = {**STATES, "reality": tuple(reality)}
     return FormMessage(
@@ -151,69 +205,77 @@ def _lab_form(robot: str, laws: tuple[tuple[str, str], ...], own: str, words: Wo
 
 @lru_cache(maxsize=256)
 def _step_form(
-    robot: str,
-    laws: tuple[tuple[str, str], ...],
-    own: str,
+    lab: _Lab,
     controls: tuple[str, ...],
     marks: tuple[tuple[str, FieldValue], ...],
     words: Words,
 ) -> FormMessage:
-    fields = _fields(robot, laws, own, dict(marks), words)
+    fields = _fields(lab, dict(marks), words)
     named = [name for control in controls for name in CONTROLS.get(control, (control,))]
     shown = tuple(fields[name] for name in dict.fromkeys(named) if name in fields)
-    group = FormGroup(name="step", title=words("lesson.controls"), fields=shown)
-    return FormMessage(place="step", groups=(group,) if shown else ())
+    if not shown:
+        return NO_STEP
+    fields_and_all = (*shown, _button("controls", words("lesson.all_controls")))
+    group = FormGroup(name="step", title=words("lesson.controls"), fields=fields_and_all)
+    return FormMessage(place="step", groups=(group,))
 
 
 LEVELS = {
     "setup": "first",
-    **dict.fromkeys(("hand", "gains", "along", "reality", "view", "robot"), "deeper"),
+    **dict.fromkeys(("hand", "gains", "along", "points", "reality", "view", "robot"), "deeper"),
 }
 
 
 def _group_of(name: str, robot: str) -> str:
-    """The group in which a field of the lab stands; empty: it is not shown there."""
+    """The group in which a field of the lab stands that is not seen at once."""
     if name in _OTHERS:
         return _OTHERS[name]
-    if name in FIRST:
-        return "setup"
     known = specs(ROBOTS[robot].parameters)
     spec = known[name] if name in known else SETTINGS[name].spec
     return GROUP_OF.get(spec.group, "robot")
 
 
 _OTHERS = {
-    **dict.fromkeys(("pulse", "start_on_path"), "hand"),
-    "poles": "gains",
+    **dict.fromkeys(("pulse", "reset", "start_on_path", "show_start"), "hand"),
+    **dict.fromkeys(("poles", "defaults"), "gains"),
+    **dict.fromkeys(("add", "remove", "point", "point_z1", "point_z2"), "points"),
     "identify": "reality",
-    **dict.fromkeys(DRAWINGS, "view"),
-    **dict.fromkeys(("robot", "path", "file", "undo", "redo", "laws", "compare"), ""),
-    **{f"{part}{side}": "" for side in SIDES for part in ("", "typed_", "about_")},
+    **dict.fromkeys((*DRAWINGS, "show_zone", "view"), "view"),
 }
-"""Group of each field that is no declared setting; parts/setup.ts shows those of none."""
+"""Group of each field that is no declared setting."""
 
 
-def _fields(
-    robot: str,
-    laws: tuple[tuple[str, str], ...],
-    own: str,
-    marks: Mapping[str, FieldValue],
-    words: Words,
-) -> dict[str, FormField]:
+def _fields(lab: _Lab, marks: Mapping[str, FieldValue], words: Words) -> dict[str, FormField]:
     """All fields that a lab can have, by name, in the order of the form."""
-    kind = ROBOTS[robot].parameters
+    entry = ROBOTS[lab.robot]
+    kind = entry.parameters
+    robot = entry.make(kind())
     known, defaults = specs(kind), LabSettings()
     usual = {**values_of(kind()), **NEWCOMER}
-    chosen = dict(laws)
+    chosen = dict(lab.laws)
     found: list[FormField] = [
-        FormField(name="robot", kind="button", label=robot_label(robot, words)),
-        _path_field(own, words),
-        _button("file", words("design.files")),
+        FormField(
+            name="robot",
+            kind="button",
+            label=robot_label(lab.robot, words),
+            help=robot_text(entry, words),
+            picture=picture_of(entry),
+        ),
+        _path_field(robot, lab.path, words),
+        FormField(
+            name="draw",
+            kind="button",
+            label=words("setup.draw"),
+            help=words("design.draw_hint"),
+            act={"is": "freehand"},
+        ),
+        _button("file", words("setup.file"), help=words("setup.file_hint")),
         _button("undo", words("design.undo"), Undo()),
         _button("redo", words("design.redo"), Redo()),
         *_law_fields(robot, chosen, words),
         _button("laws", words("laws.about")),
-        _button("compare", words("compare.title")),
+        _button("compare", words("setup.compare")),
+        _button("keep", words("keep.title")),
     ]
     for name in fields_of("lab", kind, chosen.values()):
         spec, default = (
@@ -229,11 +291,17 @@ def _fields(
         field = setting_field(name, spec, words, default=default, mark=mark, section=section)
         found.append(field)
     found += [
-        FormField(name="poles", kind="note", label=""),
+        _switch("show_start", "start.show", words),
         _button("pulse", words("gains.pulse"), Pulse(), words("gains.pulse_hint")),
+        _button("reset", words("start.reset"), Reset()),
         _button("start_on_path", words("start.default"), StartOnPath()),
+        FormField(name="poles", kind="note", label=""),
+        _button("defaults", words("gains.defaults"), ResetParameters()),
+        *_point_fields(robot, lab.points, words),
         _button("identify", words("gains.identify"), Identify(), words("gains.identify_hint")),
         *(drawing_field(name, words) for name in DRAWINGS),
+        *((_switch("show_zone", "design.zone", words),) if robot.frame.p == 2 else ()),
+        FormField(name="view", kind="button", label=words("run.view"), act={"is": "view"}),
     ]
     return {field.name: field for field in found}
 
@@ -244,9 +312,40 @@ def _button(name: str, label: str, command: object = None, help: str = "") -> Fo
     return FormField(name=name, kind="button", label=label, act=act, help=help)
 
 
-def _path_field(own: str, words: Words) -> FormField:
+def _switch(name: str, key: str, words: Words) -> FormField:
+    """Switches something that is drawn and that no lesson names."""
+    hint = words(f"{key}_hint")
+    return FormField(name=name, kind="switch", label=words(key), help=hint, default=False)
+
+
+def _point_fields(robot: Robot, count: int, words: Words) -> Iterator[FormField]:
+    """Adds and removes control points of the path, and moves one."""
+    yield _button("add", words("design.add"), AddPoint())
+    yield _button("remove", words("design.remove"), RemovePoint())
+    numbers = [FormOption(value=i + 1, label=str(i + 1)) for i in range(count)]
+    yield FormField(
+        name="point",
+        kind="choice",
+        label=words("design.selected"),
+        help=words("design.arrows"),
+        options=(FormOption(value=0, label=words("design.no_point")), *numbers),
+    )
+    for name, axis in zip(("point_z1", "point_z2"), robot.frame.axes, strict=True):
+        yield FormField(
+            name=name,
+            kind="number",
+            label=words("design.coordinate", name=f"y{axis}"),
+            low=-FARTHEST,
+            high=FARTHEST,
+            step=5e-4,
+            factor=1e3,
+            needs=((FormNeed("point"),),),
+        )
+
+
+def _path_field(robot: Robot, own: str, words: Words) -> FormField:
     options = [
-        FormOption(value=name, label=path_label(name, words), picture=_outline(name))
+        FormOption(value=name, label=preset_label(name, robot, words), picture=outline(name))
         for name in presets()
     ]
     if own:
@@ -261,19 +360,8 @@ def _path_field(own: str, words: Words) -> FormField:
     )
 
 
-@lru_cache(maxsize=16)
-def _outline(preset: str) -> str:
-    """The picture of a preset path."""
-    curve = presets()[preset].curve
-    points = curve.at(np.linspace(-np.pi, np.pi, 49))
-    points = points - (points.min(axis=0) + points.max(axis=0)) / 2
-    points = 45 * points / np.abs(points).max() * (1, -1)
-    return "M" + "L".join(f"{x:.0f} {y:.0f}" for x, y in points)
-
-
-def _law_fields(robot: str, chosen: Mapping[str, str], words: Words) -> list[FormField]:
-    system = ROBOTS[robot].make(ROBOTS[robot].parameters()).system
-    offered = [name for name, law in LAWS.items() if law.suits(system)]
+def _law_fields(robot: Robot, chosen: Mapping[str, str], words: Words) -> list[FormField]:
+    offered = suitable(robot)
     options = tuple(FormOption(value=name, label=law_label(name, words)) for name in offered)
     options = (*options, FormOption(value=OWN, label=words("laws.own")))
     fields = list[FormField]()
@@ -294,7 +382,7 @@ def _law_fields(robot: str, chosen: Mapping[str, str], words: Words) -> list[For
                 help=words("laws.own_hint"),
                 needs=((FormNeed(side, (OWN,)),),),
             ),
-            FormField(name=f"about_{side}", kind="note", label="", tone="about"),
+            FormField(name=f"about_{side}", kind="note", label="", tone=f"of_{side}"),
         ]
     return fields
 

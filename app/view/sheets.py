@@ -10,7 +10,6 @@ from msgspec import Struct
 from onpath.app.channel.sheet_messages import DisplaySheet, KeepSheet, LanguageName, SheetName
 from onpath.app.lab.lesson_state import LessonState
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
-from onpath.app.view.choices import choices
 from onpath.app.view.comparing import compare_sheet
 from onpath.app.view.help import help_sheet
 from onpath.app.view.laws import law_sheet
@@ -51,7 +50,6 @@ def sheet_of(
         "lessons": lambda: lesson_sheet(LessonState(course, snapshot.lesson.progress, words)),
         "help": lambda: help_sheet(words),
         "display": lambda: display_sheet(context.preferences),
-        "choices": lambda: choices(robot, words),
         "index": lambda: index(robot, course, words),
     }
     return make[what]()

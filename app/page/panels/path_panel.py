@@ -10,6 +10,7 @@ import viser
 from onpath.app.exports.path_upload import MOST_BYTES, PathReader, Upload
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of, robot_of
+from onpath.app.page.overlays import Switches
 from onpath.app.page.panels.widgets import (
     LabValue,
     ParameterWidgets,
@@ -22,7 +23,7 @@ from onpath.app.page.panels.widgets import (
     put_number,
     refused,
 )
-from onpath.app.view.choices import remark_on
+from onpath.app.view.paths import remark_on
 from onpath.app.viser_adapter.file_uploads import take_files
 from onpath.lessons.labels import parameter_heading, parameter_help, path_label
 from onpath.lessons.words import Words
@@ -86,7 +87,7 @@ class PathPanel:
         post: Post,
         first: PageSnapshot,
         draw: Callable[[], None],
-        show_zone: Callable[[bool], None],
+        switches: Switches,
         files: PathReader,
     ) -> None:
         self._version, self._words, self._latest = -1, words, first
@@ -112,9 +113,9 @@ class PathPanel:
         gui.add_markdown(words("design.arrows"))
         self._sampled: np.ndarray | None = None
         self._rank = gui.add_markdown("")
-        zone = gui.add_checkbox(words("design.zone"), False, hint=words("design.zone_hint"))
+        zone = gui.add_checkbox(words("design.zone"), switches.zone, hint=words("design.zone_hint"))
         zone.visible = planar  # the zone is drawn about the base pivot in the robot's plane
-        on_user_update(zone, show_zone)
+        on_user_update(zone, lambda on: setattr(switches, "zone", on))
 
     def _add_plane(self, gui: viser.GuiApi, post: Post, first: PageSnapshot) -> None:
         """Add number inputs for the plane of eq. (23); a change of the plane rebuilds the page."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import asdict
 from functools import partial
 
@@ -11,6 +10,7 @@ import viser
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
+from onpath.app.page.overlays import Switches
 from onpath.app.page.panels.widgets import LabValue, Post, add_buttons, on_user_update, put_number
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.start import BOUNDS
@@ -30,7 +30,7 @@ class StartPanel:
     """A folder for the start of the next run.
 
     Args:
-        show: shows the start in the scene, or hides it.
+        switches: whether the scene shows the start.
     """
 
     def __init__(
@@ -39,15 +39,17 @@ class StartPanel:
         words: Words,
         post: Post,
         first: PageSnapshot,
-        show: Callable[[bool], None],
+        switches: Switches,
     ) -> None:
         self._start = LabValue(post)
         with gui.add_folder(words("start.title"), expand_by_default=False):
-            seen = gui.add_checkbox(words("start.show"), False, hint=words("start.show_hint"))
+            seen = gui.add_checkbox(
+                words("start.show"), switches.start, hint=words("start.show_hint")
+            )
             self._numbers = {name: self._add(gui, words, name) for name in UNITS}
             commands = {words("start.reset"): c.Reset(), words("start.default"): c.StartOnPath()}
             add_buttons(gui, "", commands, post)
-        on_user_update(seen, show)
+        on_user_update(seen, lambda on: setattr(switches, "start", on))
         for name, handle in self._numbers.items():
             on_user_update(handle, partial(self._change, name))
         self.follow(first)

@@ -7,7 +7,7 @@ import { AT_JOINTS } from "../core/symbols"
 import { Files } from "./files"
 import { keep, keepLab, kept, siteOf } from "./kept"
 import {
-    PROTOCOL, type Ask, type Choices, type Command, type Compared, type CompareSheet, type DisplaySheet, type FrameMessage, type Hello, type HelpSheet, type Index, type KeepSheet,
+    PROTOCOL, type Ask, type Command, type Compared, type CompareSheet, type DisplaySheet, type FrameMessage, type Hello, type HelpSheet, type Index, type KeepSheet,
     type LabMessage, type LawSheet, type LessonMessage, type LessonSheet, type Light, type MeasuredMessage, type PageMessage, type PathMessage,
     type RobotSheet, type StateMessage, type Told, type WordsMessage,
 } from "./messages"
@@ -26,7 +26,7 @@ const SETTLES = 400 // [ms], until what the server shows counts again
 /** Where the numbers of a field are among those that a row has besides for each robot. */
 type Fields = Map<string, { first: number; size: number; unit: number }>
 type SheetName = Ask["what"]
-type Answer = RobotSheet | LawSheet | CompareSheet | KeepSheet | LessonSheet | HelpSheet | DisplaySheet | Index | Choices
+type Answer = RobotSheet | LawSheet | CompareSheet | KeepSheet | LessonSheet | HelpSheet | DisplaySheet | Index
 
 /** A path through points at evenly spaced θ from -π to π. */
 class SampledPath implements PathShape {
@@ -134,8 +134,8 @@ export class RemoteEngine implements Engine {
     outdated = false
     readonly files = new Files(message => this.send(message))
     readonly settings = new RemoteSettings(message => this.send(message))
-    /** The settings that are shown; null until the lab has told them, which it does if it is asked. */
-    form: FormMessage | null = null
+    /** The forms of the lab and of an open step; the lab tells them if it is asked. */
+    readonly forms = new Map<FormMessage["place"], FormMessage>()
     private asksForm = false
     /** The open step of a lesson, and what is measured in it; null until they are known. */
     lesson: LessonMessage | null = null
@@ -357,7 +357,7 @@ export class RemoteEngine implements Engine {
             this.measured = message
             this.tell("measured")
         } else if (message.is === "form") {
-            this.form = message
+            this.forms.set(message.place, message)
             this.tell("form")
         } else if (message.is === "values") {
             this.settings.hear(message)

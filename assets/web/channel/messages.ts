@@ -188,7 +188,7 @@ export interface MakeFile {
 /** Tell what a sheet shows; the answer's `is` is its name. */
 export interface Ask {
     is: "ask"
-    what: "choices" | "compare" | "display" | "help" | "index" | "keep" | "laws" | "lessons" | "robots"
+    what: "compare" | "display" | "help" | "index" | "keep" | "laws" | "lessons" | "robots"
 }
 
 /** The next stroke around a robot becomes the path; asked for again, no stroke does. */
@@ -604,30 +604,6 @@ export interface RobotSheet {
     robots: RobotCard[]
 }
 
-/** A path to choose; `outline` is a path of SVG in a square from -50 to 50, up is negative. */
-export interface PathOutline {
-    name: string
-    label: string
-    outline: string
-}
-
-/** A law that can be compared; a typed one is its own name. `chosen`: at first. */
-export interface LawChoice {
-    name: string
-    label: string
-    text: string
-    chosen: boolean
-}
-
-/** What the robot is, what it can follow, under which laws, and a law to begin typing with. */
-export interface Choices {
-    is: "choices"
-    robot: RobotCard
-    paths: PathOutline[]
-    laws: LawChoice[]
-    own: string
-}
-
 /** A law in four sentences, and its source. */
 export interface LawDescription {
     name: string
@@ -653,6 +629,14 @@ export interface LawSheet {
     bounds: string
     own: string[]
     names: NameMeaning[]
+}
+
+/** A law that can be compared; a typed one is its own name. `chosen`: at first. */
+export interface LawChoice {
+    name: string
+    label: string
+    text: string
+    chosen: boolean
 }
 
 /** An obstruction. */
@@ -830,7 +814,6 @@ export type LabMessage =
     | Alive
     | Refused
     | RobotSheet
-    | Choices
     | LawSheet
     | CompareSheet
     | KeepSheet

@@ -46,10 +46,12 @@ export interface FormField {
     mark?: number | string | boolean | null
     /** the command that a button sends. */
     act?: Record<string, unknown> | null
-    /** of a note or a button: "main", "warning" or none. */
+    /** of a note or a button: "main", "warning" or none; of a note also the side whose colour it has: "of_left" or "of_right". */
     tone?: string
     /** a heading above all fields of the same section. */
     section?: string
+    /** the address of a button's picture. */
+    picture?: string
 }
 
 /** Fields that belong together. */
@@ -65,13 +67,11 @@ export interface FormGroup {
     rest?: string
 }
 
-/** All fields of a place. */
+/** All fields of a place; without groups, there is no such place now. */
 export interface FormMessage {
     is: "form"
     place: "figure" | "lab" | "step"
     groups: FormGroup[]
-    /** what the place lacks, in one line; empty if nothing. */
-    lacks?: string
 }
 
 /** Values of fields: all of them at first, then those that have changed. */

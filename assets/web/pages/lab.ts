@@ -3,6 +3,7 @@
 
 import { made, tell } from "../core/dom"
 import { shown } from "../core/engine"
+import type { FormMessage } from "../core/form_data"
 import { retone } from "../core/ink"
 import { keptLook } from "../core/look"
 import { said, significant, written, type Texts } from "../core/words"
@@ -11,7 +12,7 @@ import type { Command } from "../channel/messages"
 import { Connection } from "../channel/connection"
 import { Column } from "../parts/column"
 import { Downloads } from "../parts/downloads"
-import { Form } from "../parts/form"
+import { Form, type FormHost } from "../parts/form"
 import { Lens } from "../parts/lens"
 import { OverStage } from "../parts/over_stage"
 import { Strip } from "../parts/strip"
@@ -51,7 +52,7 @@ class Face {
     private canvas: HTMLElement | null = null
     private width = 0 // of the canvas, [px]
     private height = 0
-    private form: Form | null = null
+    private readonly forms = new Map<FormMessage["place"], Form>()
     private resizing = 0
     private read = 0
 
@@ -84,10 +85,10 @@ class Face {
         if (OURS) {
             engine.askForm()
             engine.on(change => {
-                if (change === "form") this.showForm()
-                else if (change === "values") this.form?.update()
+                if (change === "form") this.showForms()
+                else if (change === "values") for (const form of this.forms.values()) form.update()
             }, signal)
-            this.showForm()
+            this.showForms()
         }
         document.documentElement.classList.toggle("op-ours", OURS)
         document.documentElement.classList.add("op-stripped")
@@ -111,23 +112,32 @@ class Face {
         this.column.hear(lesson)
         const step = lesson.lesson ? lesson.steps[lesson.index] : undefined
         this.strip.follows(step)
-        this.showForm()
+        this.showForms()
         this.transport.subdued = step?.kind === "run" && !lesson.notes?.played[String(lesson.index)]
     }
 
     /** Show the settings: those of the lab in the panel, those of a step in its card. */
-    private showForm(): void {
-        const { engine, texts, shell } = this, data = engine.form, { settings } = engine
-        if (!data || !shell) return
-        if (this.form) this.form.show(data)
-        else
-            this.form = new Form(data, {
-                texts, value: settings.value, refused: settings.refused, waits: settings.waits,
-                set: (name, value) => settings.set(name, value),
-                act: ({ name, act }) => (act ? engine.send(act as unknown as Command) : shell.go(name)),
-            }, this.ended.signal)
-        const { element } = this.form
-        if (data.place === "lab" || !this.column.offer(element)) shell.panel.body.append(element)
+    private showForms(): void {
+        const { engine, texts, shell, forms, column } = this, { settings } = engine
+        if (!shell) return
+        const host: FormHost = {
+            texts, value: settings.value, refused: settings.refused, waits: settings.waits,
+            set: (name, value) => settings.set(name, value),
+            act: ({ name, act }) => (act ? engine.send(act as unknown as Command) : shell.go(name)),
+        }
+        for (const [place, data] of engine.forms) {
+            const form = forms.get(place)
+            if (form) form.show(data)
+            else forms.set(place, new Form(data, host, this.ended.signal))
+        }
+        const lab = forms.get("lab"), step = forms.get("step")
+        if (lab && !shell.form) {
+            shell.form = lab
+            shell.panel.body.append(lab.element)
+        }
+        if (!step) return
+        if (!engine.forms.get("step")!.groups.length) step.element.remove()
+        else if (!step.element.isConnected) column.offer(step.element) // once: what is moved loses the focus
     }
 
     /** Remove it; returns what was open. */
@@ -200,8 +210,10 @@ class Face {
     private light(symbol: string): void {
         this.engine.light(symbol)
         for (const picture of [this.overlay, ...this.lenses]) picture.lit = symbol
+        const gain = symbol.startsWith("K_") ? symbol.replace("_", "") : ""
+        for (const form of this.forms.values()) form.light(gain)
         for (const row of document.querySelectorAll(".op-gain")) row.classList.remove("op-gain")
-        if (symbol.startsWith("K_")) sliderOf(symbol.replace("_", ""))?.classList.add("op-gain")
+        if (gain && !this.shell) sliderOf(gain)?.classList.add("op-gain")
     }
 
     /** Draw for a projector, or for a screen. */

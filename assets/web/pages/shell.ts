@@ -1,12 +1,13 @@
 // What stands around the stage of the lab's page: the head, the controls, the search, the keys, and all that opens.
 
 import type { RemoteEngine } from "../channel/channel"
-import type { Choices, Command, Compared, Index, PageMessage, Told } from "../channel/messages"
+import type { Command, Compared, Index, PageMessage, Told } from "../channel/messages"
 import { keptLook, keepLook } from "../core/look"
 import { said, type Texts } from "../core/words"
 import { Compare } from "../parts/compare_sheet"
 import { display } from "../parts/display_sheet"
 import { pathFromFile } from "../parts/file_sheet"
+import type { Form } from "../parts/form"
 import { Header } from "../parts/header"
 import { help } from "../parts/help_sheet"
 import { Keep } from "../parts/keep_sheet"
@@ -15,11 +16,8 @@ import { aboutLaws } from "../parts/law_sheet"
 import { chooseLesson } from "../parts/lesson_sheet"
 import { Panel } from "../parts/panel"
 import { pointAtStage } from "../parts/pointing"
-import { OwnLaw } from "../parts/own_law_sheet"
-import { openPath } from "../parts/path_sheet"
 import { chooseRobot } from "../parts/robot_sheet"
 import { Search, type Entry } from "../parts/search"
-import { Setup } from "../parts/setup"
 import type { SheetDialog } from "../parts/sheet"
 
 /** What can be opened, with the title under which the search finds it. */
@@ -29,39 +27,25 @@ const TITLES = {
 } as const
 type Opens = keyof typeof TITLES
 
-/** What the shell needs of the settings. */
-export interface Settings {
-    entries(): Entry[]
-}
-
 type Message = Command | PageMessage
 
 export class Shell {
     readonly header: Header
     readonly panel: Panel
-    /** The settings that are shown, for the search. */
-    settings: Settings | null = null
+    /** The form in the panel; null until the lab has told it. */
+    form: Form | null = null
     private readonly search: Search
     private readonly keys: Keys
     private index: Index | null = null
-    private choices: Choices | null = null
     private known = "" // language and robot of the index
     private opened: { name: Opens; dialog: SheetDialog } | null = null
     private keep: Keep | null = null
     private compare: Compare | null = null
-    private readonly setup: Setup
-    private ownLaw: OwnLaw | null = null
 
     /** `reopen`: what was open before the page got its present words. */
     constructor(private readonly engine: RemoteEngine, private readonly texts: Texts, signal: AbortSignal, reopen: string) {
         this.header = new Header(texts, place => this.go(place))
         this.panel = new Panel(texts, this.header.controls, signal)
-        this.setup = new Setup(texts, engine, {
-            open: what => void this.open(what),
-            file: () => void openPath(texts, engine),
-            type: side => this.type(side),
-        })
-        this.panel.body.append(this.setup.element)
         this.search = new Search(texts, () => this.entries())
         this.keys = new Keys(message => engine.send(message), () => this.search.open(), signal)
         engine.on(change => {
@@ -106,13 +90,6 @@ export class Shell {
         this.opened = { name, dialog: await opens[name]() }
     }
 
-    private type(side: 0 | 1): void {
-        this.ownLaw = new OwnLaw(this.texts, this.engine, side, this.choices?.own ?? "", () => void this.open("laws"), () => {
-            this.ownLaw = null
-            this.setup.restore()
-        })
-    }
-
     /** Go to what a button names. */
     go(place: string): void {
         if (place === "robot") return void this.open("robots")
@@ -125,8 +102,6 @@ export class Shell {
         const { engine } = this, lab = engine.lab!
         this.keep?.show(lab.shared)
         this.compare?.follow()
-        this.ownLaw?.follow()
-        this.setup.follow()
         this.panel.freeze(lab.frozen)
         const known = `${lab.language} ${lab.robot}`
         if (known === this.known) return
@@ -135,10 +110,6 @@ export class Shell {
             this.index = index
             this.keys.known = index.keys
             this.search.renew()
-        })
-        void engine.ask("choices").then(choices => {
-            this.choices = choices
-            this.setup.offer(choices)
         })
     }
 
@@ -150,13 +121,19 @@ export class Shell {
 
     /** Everything that the search finds. */
     private entries(): Entry[] {
-        const { texts, index, settings } = this
+        const { texts, index, form } = this
+        const settings = (form?.settings ?? []).map(({ name, label, group, ...field }) => ({
+            kind: group, label, text: field.help ?? "", go: () => {
+                this.panel.bring()
+                form!.reveal(name)
+            },
+        }))
         const sheets = Object.entries(TITLES).map(([name, key]) => ({
             kind: said(texts, "search.kind_open"), label: said(texts, key), text: said(texts, `search.of_${name}`), go: () => void this.open(name as Opens),
         }))
         const found = (index?.found ?? []).map(({ kind, label, text, send }) => ({
             kind: said(texts, `search.kind_${kind}`), label, text, go: () => send.forEach(message => this.engine.send(message)),
         }))
-        return [...(settings?.entries() ?? []), ...sheets, ...found]
+        return [...settings, ...sheets, ...found]
     }
 }

@@ -182,13 +182,12 @@ export class Column implements Robots {
         })
     }
 
-    /** Replace the parts of a section that have changed; the focus stays where it is. */
-    /** Put the settings into the open step; returns whether there is one. */
-    offer(form: HTMLElement): boolean {
+    /** Put the settings into the open step, if there is one. */
+    offer(form: HTMLElement): void {
         this.view?.offer(form)
-        return this.view !== null
     }
 
+    /** Replace the parts of a section that have changed; the focus stays where it is. */
     private renew(name: string, before: string[], parts: HTMLElement[], view: StepView | null): void {
         const words = this.sections[name]!.querySelector(".words")!
         const known = new Map<string, HTMLElement[]>() // the elements made of each part
@@ -288,7 +287,7 @@ function put(element: HTMLElement, html: string): void {
 
 /** Whether the script has made an element, not the server. */
 function isOurs(element: Element): boolean {
-    return element.matches(".compared, .symbols, .before")
+    return element.matches(".compared, .symbols, .before, .form")
 }
 
 function controlsOf(element: Element): HTMLElement[] {

@@ -1,9 +1,11 @@
 // The rows of a form: a setting each, or a button, or a note. While a hand is on a row, it shows what the hand wants.
 
 import { made, tell } from "../core/dom"
+import { draftOf, keepDraft } from "../core/drafts"
 import type { FormField, FormOption } from "../core/form_data"
 import { Scale, typedNumber } from "../core/scales"
 import { said, written, type Texts } from "../core/words"
+import { icon } from "./icons"
 
 const RESTS = 300 // [ms] after the last touch, for which the hand's value stays
 const TOLD = 5000 // [ms] for which a row says that the lab has another value than the hand wanted
@@ -473,16 +475,15 @@ class ButtonRow extends Row {
 
     protected name(): void {
         const { button, field } = this
-        tell(button, field.label)
+        if (field.picture) button.replaceChildren(Object.assign(made("img", ""), { src: field.picture, alt: "" }), made("b", "", field.label), icon("right"))
+        else tell(button, field.label)
         this.element.title = field.help ?? ""
         button.classList.toggle("main", field.tone === "main")
+        button.classList.toggle("pictured", Boolean(field.picture))
         describe(button, field.help)
     }
 
-    /** Its value may say what the button would act on. */
-    protected show(value: Value): void {
-        tell(this.button, typeof value === "string" && value ? value : this.field.label)
-    }
+    protected show(): void {}
 }
 
 /** A text of one or several lines. */
@@ -491,11 +492,18 @@ class TextRow extends Row {
     private readonly use = made("button", "use")
     private readonly heading = made("label", "name")
     protected readonly inputs = [this.area]
+    private readonly draft = `field ${this.field.name}`
     private typing = false
+    private isKept = true // whether there may be a draft
 
     constructor(field: FormField, form: RowForm, signal: AbortSignal) {
         super(field, form, signal)
         const { area, use } = this
+        const { text } = draftOf<{ text: string }>(this.draft) ?? {}
+        if (typeof text === "string") {
+            area.value = text
+            this.typing = true
+        }
         area.id = this.heading.htmlFor = this.id
         area.rows = 1
         area.spellcheck = false
@@ -503,12 +511,14 @@ class TextRow extends Row {
         use.textContent = said(form.host.texts, "form.use")
         use.addEventListener("click", () => this.commit(), { signal })
         area.addEventListener("input", () => {
-            this.typing = true
+            this.typing = this.isKept = true
+            keepDraft(this.draft, { text: area.value })
             this.touched()
             this.update()
         }, { signal })
         area.addEventListener("keydown", event => {
-            if (event.key === "Enter" && (event.ctrlKey || event.metaKey)) this.commit()
+            if (event.isComposing) return
+            if (event.key === "Enter" && !event.shiftKey) this.commit()
             else if (event.key === "Escape" && this.typing) this.undo()
             else return
             event.preventDefault()
@@ -527,8 +537,11 @@ class TextRow extends Row {
     }
 
     protected show(value: Value): void {
-        if (!this.typing && this.area.value !== value) this.area.value = String(value)
         this.use.hidden = !this.typing
+        if (this.typing || this.form.host.refused(this.field.name)) return // what was refused stays, to be mended
+        if (this.isKept) keepDraft(this.draft, null)
+        this.isKept = false
+        if (this.area.value !== value) this.area.value = String(value)
     }
 
     private commit(): void {

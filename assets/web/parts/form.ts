@@ -16,14 +16,13 @@ export class Form implements RowForm {
     readonly element = made("div", "form")
     private readonly main = made("div", "column")
     private readonly more = made("div", "column")
-    private readonly lacks = made("p", "lacks")
     private readonly groups = new Map<string, GroupView>()
     private readonly rows = new Map<string, Row>()
     private data: FormMessage | null = null
     private shown = ""
 
     constructor(data: FormMessage, readonly host: FormHost, private readonly signal: AbortSignal) {
-        this.element.append(made("div", "columns", this.main, this.more), this.lacks)
+        this.element.append(made("div", "columns", this.main, this.more))
         this.show(data)
     }
 
@@ -66,7 +65,6 @@ export class Form implements RowForm {
         arrange(this.more, placed(group => !isFirst(group)))
         this.more.hidden = !this.more.firstChild
         this.element.dataset["place"] = data.place
-        tell(this.lacks, data.lacks ?? "")
         for (const field of fields) this.rows.get(field.name)!.take(field)
         this.update()
         // An element that is moved loses the focus.
@@ -114,6 +112,12 @@ export class Form implements RowForm {
         return true
     }
 
+    /** What can be set or done here now, with the title of its group; what opens elsewhere is not among it. */
+    get settings(): (FormField & { group: string })[] {
+        const all = (this.data?.groups ?? []).flatMap(({ title, fields }) => fields.map(field => ({ ...field, group: title })))
+        return all.filter(({ kind, act, needs }) => kind !== "note" && (kind !== "button" || act) && this.acts(needs))
+    }
+
     /** Mark the row of a setting that is pointed at elsewhere; empty: none. */
     light(name: string): void {
         for (const [each, { element }] of this.rows) element.classList.toggle("lit", each === name)
@@ -136,6 +140,7 @@ class GroupView {
     private readonly dot = made("span", "dot")
     private readonly back = made("button", "back")
     private readonly sections = new Map<string, HTMLElement>()
+    private readonly runs = new Map<string, HTMLElement>() // of buttons, by the name of the first one
 
     constructor(private group: FormGroup, private readonly form: Form, signal: AbortSignal) {
         const { name, level } = group
@@ -162,17 +167,31 @@ class GroupView {
     close(): void { if (this.details) this.details.open = false }
 
     take(group: FormGroup): void {
-        const { form, title, body, sections, back } = this
+        const { form, title, body, sections, runs, back } = this
         this.group = group
         tell(title, group.title)
         body.ariaLabel = group.title
         back.title = back.ariaLabel = said(form.host.texts, "form.back_group", { group: group.title })
-        const rows = new Map<string, HTMLElement[]>()
+        const rows = new Map<string, HTMLElement[]>(), buttons = new Map<HTMLElement, HTMLElement[]>()
+        let run: HTMLElement | null = null // to which a further button belongs
         for (const field of group.fields) {
             const section = field.section ?? "", element = form.row(field.name)!.element
             element.classList.toggle("under", group.fields.some(each => field.needs?.flat().some(need => need.name === each.name)))
-            rows.set(section, [...(rows.get(section) ?? []), element])
+            const own = rows.get(section) ?? []
+            rows.set(section, own)
+            if (field.kind !== "button" || field.picture) {
+                own.push(element)
+                run = null
+                continue
+            }
+            if (!run || own.at(-1) !== run) {
+                run = runs.get(field.name) ?? made("div", "acts")
+                runs.set(field.name, run)
+                own.push(run)
+            }
+            buttons.set(run, [...(buttons.get(run) ?? []), element])
         }
+        for (const [box, elements] of buttons) arrange(box, elements)
         const parts = [...rows].flatMap(([section, elements]) => {
             if (!section) return elements
             const box = sections.get(section) ?? made("div", "section", made("h4", "", section))

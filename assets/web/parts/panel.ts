@@ -44,6 +44,11 @@ export class Panel {
         else if (element.contains(document.activeElement)) opener.focus()
     }
 
+    /** Have it in sight: as a column it is. */
+    bring(): void {
+        if (!this.element.getClientRects().length) this.show(true)
+    }
+
     /** Say why the lab takes no changes; an empty text: it does. */
     freeze(why: string): void {
         tell(this.frozen, why)

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from onpath.app.lab import commands as c
-from onpath.app.view.choices import remark_on
+from onpath.app.view.paths import remark_on
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS
 from tests.support.lab import do, new_lab

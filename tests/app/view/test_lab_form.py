@@ -7,7 +7,13 @@ from typing import Any
 
 import pytest
 
-from onpath.app.channel.messages import AskForm, FormMessage, SetField, ValuesMessage
+from onpath.app.channel.messages import (
+    AskForm,
+    FieldValue,
+    FormMessage,
+    SetField,
+    ValuesMessage,
+)
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.page.overlays import Switches
@@ -54,7 +60,7 @@ def test_a_step_has_what_it_names_and_marks_its_values() -> None:
     snapshot = take_page_snapshot(Lab(loop_cache()), 1.0)
     setup = StepSetup(controls=("K1", "hold", "wall", "alpha"), set={"K1": 900.0})
     found = {field.name: field for field in fields(form_of(snapshot, setup, ENGLISH))}
-    assert list(found) == ["K1", "wall", "wall_z1", "wall_z2", "wall_angle"]
+    assert list(found) == ["K1", "wall", "wall_z1", "wall_z2", "wall_angle", "controls"]
     assert (found["K1"].mark, found["K1"].default) == (900.0, 400.0)
 
 
@@ -72,7 +78,8 @@ def test_a_page_hears_of_a_value_when_it_counts_and_of_what_has_changed() -> Non
 
     form.hear(AskForm(), True)
     first = news()
-    assert [type(each) for each in first] == [FormMessage, ValuesMessage]
+    assert [type(each) for each in first] == [FormMessage, FormMessage, ValuesMessage]
+    assert [each.place for each in first[:2]] == ["lab", "step"] and first[1].groups == ()
     assert news() == []
     form.hear(SetField("K1", 905.0, 7), True)
     assert news() == []  # it does not count yet
@@ -87,6 +94,8 @@ def test_a_page_hears_of_a_value_when_it_counts_and_of_what_has_changed() -> Non
     assert news() == [ValuesMessage({"K1": 400.0}, {"K1": ""}, {"K1": 9})]
     form.hear(SetField("tube", True, 10), True)
     assert news()[0].values == {"tube": True} and switches.tube
+    form.hear(SetField("show_zone", True, 10), True)
+    assert news()[0].values == {"show_zone": True} and switches.zone
     form.hear(SetField("K2", 55.0, 11), False)  # another lab is shown
     lab.drain()
     assert news() == [ValuesMessage({}, {}, {"K2": 11})]
@@ -94,3 +103,22 @@ def test_a_page_hears_of_a_value_when_it_counts_and_of_what_has_changed() -> Non
     form.hear(SetField("K2", 55.0, 12), True)
     lab.drain()
     assert news() == [ValuesMessage({}, {}, {"K2": 12})]
+
+
+def test_a_point_of_the_path_is_chosen_and_moved() -> None:
+    lab = Lab(loop_cache())
+    form = PageForm(lab.post)
+
+    def told(name: str, value: FieldValue) -> dict[str, Any]:
+        form.hear(SetField(name, value, 1), True)
+        lab.drain()
+        return values_in(take_page_snapshot(lab, 1.0), {}, (), ENGLISH)
+
+    before = told("point", 3)
+    assert before["point"] == 3
+    moved = told("point_z1", float(before["point_z1"]) + 2e-3)
+    assert moved["point_z1"] == pytest.approx(float(before["point_z1"]) + 2e-3)
+    assert moved["point_z2"] == pytest.approx(float(before["point_z2"]))
+    assert told("point", "a text")["point"] == 3
+    assert told("point", 99)["point"] == 3
+    assert told("point", 0)["point"] == 0

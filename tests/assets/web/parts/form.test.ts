@@ -177,6 +177,40 @@ test("a text counts when it is used, and Escape forgets it", () => {
     assert.ok(!use.hidden && values["law"] === "")
     use.click()
     assert.equal(values["law"], "across = -K1*xi")
+    assert.equal(sessionStorage.length, 0)
+})
+
+test("a text that is not used yet survives a reload, and one that is refused stays to be mended", () => {
+    const area = (of: Element) => of.querySelector("textarea")!
+    const first = opened(), typed = area(first.row("law"))
+    typed.value = "across = 1"
+    typed.dispatchEvent(new Event("input"))
+    const { form, row, refused, values } = opened()
+    assert.equal(area(row("law")).value, "across = 1")
+    refused["law"] = "no"
+    press(area(row("law")), "Enter")
+    values["law"] = "" // as before
+    pass(1000)
+    form.update()
+    assert.equal(area(row("law")).value, "across = 1")
+    refused["law"] = ""
+    form.update()
+    assert.equal(area(row("law")).value, "")
+    assert.equal(sessionStorage.length, 0)
+})
+
+test("buttons that follow each other stand in a row, and a search finds what acts", () => {
+    const button = (name: string, more: Partial<FormField> = {}): FormField => ({ name, kind: "button", label: name, act: { do: name }, ...more })
+    const { form, row } = opened({
+        is: "form", place: "lab", groups: [{
+            name: "first", title: "First",
+            fields: [button("robot", { picture: "data:,", act: null }), button("draw"), button("undo"), SPEED, button("redo"), LIMIT, CUT],
+        }],
+    })
+    const rows = [...form.element.querySelectorAll(".acts")].map(each => [...each.children].map(field => (field as HTMLElement).dataset["name"]))
+    assert.deepEqual(rows, [["draw", "undo"], ["redo"]])
+    assert.deepEqual(form.settings.map(({ name, group }) => `${group} ${name}`), ["draw", "undo", "speed", "redo", "limit"].map(name => `First ${name}`))
+    assert.equal(found(row("robot"), "button", "robot").querySelectorAll("img").length, 1)
 })
 
 test("no text becomes an element", () => {
@@ -187,7 +221,7 @@ test("no text becomes an element", () => {
     })
     const kinds = ["number", "choice", "switch", "button", "text", "note"] as const
     const data: FormMessage = {
-        is: "form", place: "lab", lacks: evil, groups: [
+        is: "form", place: "lab", groups: [
             { name: "a", title: evil, level: "deeper", rest: evil, states: ["choice"], fields: [...kinds.map(kind => field(kind, kind)), field("choice", "drawn")] },
         ],
     }

@@ -1,4 +1,4 @@
-"""What is chosen first: the robot, the path, and the laws."""
+"""The preset paths: what they are called for a robot, and how they look."""
 
 from __future__ import annotations
 
@@ -6,43 +6,15 @@ from functools import lru_cache
 
 import numpy as np
 
-from onpath.app.channel.sheet_messages import Choices, LawChoice, PathOutline
-from onpath.app.view.laws import suitable
-from onpath.app.view.robots import robot_card
 from onpath.lessons.labels import path_label
-from onpath.lessons.sides import law_label, law_text
 from onpath.lessons.words import Words
-from onpath.models.control.laws.own import PATH_FOLLOWING
-from onpath.models.control.sides import DEFAULT_LAWS
 from onpath.models.paths.curve_faults import ambiguities, curve_faults
 from onpath.models.paths.frames import SlantedPlane
 from onpath.models.paths.path_design import presets
-from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.robots import Robot
 
 POINTS = 60  # of an outline
 HALF = 46.0  # of its size; the picture has 50 in each direction
-
-
-def choices(robot: Robot, words: Words) -> Choices:
-    """What a robot can follow, and under which laws."""
-    return Choices(
-        robot=robot_card(ROBOTS[robot.name], words),
-        paths=[
-            PathOutline(name=name, label=preset_label(name, robot, words), outline=outline(name))
-            for name in presets()
-        ],
-        laws=[
-            LawChoice(
-                name=name,
-                label=law_label(name, words),
-                text=law_text(name, words),
-                chosen=name in DEFAULT_LAWS.values(),
-            )
-            for name in suitable(robot)
-        ],
-        own=PATH_FOLLOWING,
-    )
 
 
 def preset_label(preset: str, robot: Robot, words: Words) -> str:
