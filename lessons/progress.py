@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal
+from typing import Annotated, Literal, cast
 
 import msgspec
 
@@ -116,7 +116,8 @@ def read_progress(data: object) -> Progress:
         ValueError: it is not valid; the message names the place.
     """
     if isinstance(data, dict):  # "presenting" is one of the lab's own settings now
-        data = {name: value for name, value in data.items() if name != "presenting"}
+        given = cast("dict[object, object]", data)
+        data = {name: value for name, value in given.items() if name != "presenting"}
     progress = msgspec.convert(data, Progress)
     for notes in progress.notes.values():
         numbers = [*notes.tasks.values(), *notes.numbers.values()]

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import lru_cache
+from itertools import compress
 from math import inf
 from operator import is_
 from typing import Any
@@ -172,12 +173,12 @@ def frame_message(frame: DataFrame) -> FrameMessage:
     rows = _units(robot) * np.concatenate(numbers).reshape(len(latest), -1)
     heads = [[round(TIME * sample.time), sample.flags] for sample in latest]
     more = _more(frame, slots) if frame.fields else [()] * len(latest)
-    lines = [
+    lines: list[list[int | None]] = [
         [*head, *row, *others] for head, row, others in zip(heads, _whole(rows), more, strict=True)
     ]
     if frame.earlier is not None:
-        earlier = _earlier_lines(frame, frame.earlier)
-        lines = [line for line in earlier if line[:2] < lines[0][:2]] + lines
+        is_before = np.rint(TIME * frame.earlier.times) < heads[0][0]
+        lines = [*compress(_earlier_lines(frame, frame.earlier), is_before), *lines]
     message = FrameMessage(lines, frame.running, frame.past, frame.anew)
     if frame.anew:
         message.fields = _field_units(frame)
@@ -281,18 +282,18 @@ def _earlier_lines(frame: DataFrame, earlier: Earlier) -> list[list[int | None]]
     columns = np.concatenate([np.r_[slices[name]] for name in ("distance", *FIELDS)])
     rows = _units(robot) * earlier.values[..., columns].reshape(len(earlier.times), -1)
     heads = np.column_stack([TIME * earlier.times, _flags_at(earlier.times, earlier.events)])
-    lines: list[list[int | None]] = [*_whole(np.column_stack([heads, rows]))]
-    if not frame.fields:
-        return lines
-    more: list[list[int | None]] = [
-        *_whole(_chosen(frame, earlier.values).reshape(len(earlier.times), -1))
-    ]
+    told = _whole(np.column_stack([heads, rows]))
+    more = [()] * len(told)
+    if frame.fields:
+        more = _whole(_chosen(frame, earlier.values).reshape(len(told), -1))
     sizes = [(name in XI, size) for name, size, _ in _field_units(frame)]
     is_across = [across for across, size in sizes for _ in range(size)] * len(SIDES)
-    for time, line in zip(earlier.times, more, strict=True):
+    lines = list[list[int | None]]()
+    for time, line, others in zip(earlier.times, told, more, strict=True):
         if time < earlier.across_since:  # in another unit
-            line[:] = [None if each else x for each, x in zip(is_across, line, strict=True)]
-    return [line + others for line, others in zip(lines, more, strict=True)]
+            others = [None if each else x for each, x in zip(is_across, others, strict=True)]
+        lines.append([*line, *others])
+    return lines
 
 
 @lru_cache(maxsize=64)

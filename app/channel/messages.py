@@ -215,6 +215,10 @@ class LabCode(Struct, frozen=True, tag_field="is", tag="lab"):
     code: str
 
 
+StoredName = Literal["teacher", "speaks", "sounds", "first_minute"]
+"""Names of what a browser keeps; see `Store`."""
+
+
 class Store(Struct, frozen=True, tag_field="is", tag="store"):
     """The browser is to keep a value for `Hello`, or to forget it if it is empty.
 
@@ -223,7 +227,7 @@ class Store(Struct, frozen=True, tag_field="is", tag="store"):
             "no"; "first_minute": how many of the invitations it has shown.
     """
 
-    key: Literal["teacher", "speaks", "sounds", "first_minute"]
+    key: StoredName
     value: str
 
 

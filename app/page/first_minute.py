@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from typing import Final
 
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 
-KEPT_AS = "first_minute"
+KEPT_AS: Final = "first_minute"
 """Under which name a browser keeps how many of the invitations it has shown."""
 PAUSE = 2.5
 """Simulated time between invitations, to see the consequence of the last one [s]."""

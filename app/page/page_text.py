@@ -7,7 +7,7 @@ from functools import partial
 
 from msgspec.structs import replace
 
-from onpath.app.channel.messages import StateMessage
+from onpath.app.channel.messages import StateMessage, StoredName
 from onpath.app.common.work_thread import WorkThread
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.first_minute import KEPT_AS, FirstMinute
@@ -47,7 +47,7 @@ class PageText:
         course: Course,
         student: str,
         kept: Mapping[str, str] = {},
-        keep: Callable[[str, str], None] = lambda *_: None,
+        keep: Callable[[StoredName, str], None] = lambda *_: None,
         teaching: TeacherContext | None = None,
     ) -> None:
         self._course, self._student, self._teaching = course, student, teaching

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from typing import Literal
+
+from onpath.app.channel.messages import StoredName
 
 DEFAULTS = {"speaks": True, "sounds": False}
 """Whether a screen reader speaks about the robots, and whether the distances are heard as tones."""
@@ -17,7 +20,9 @@ class Preferences(Mapping[str, bool]):
     """
 
     def __init__(
-        self, kept: Mapping[str, str] = {}, keep: Callable[[str, str], None] = lambda *_: None
+        self,
+        kept: Mapping[str, str] = {},
+        keep: Callable[[StoredName, str], None] = lambda *_: None,
     ) -> None:
         self._keep = keep
         known = {"yes": True, "no": False}
@@ -34,7 +39,7 @@ class Preferences(Mapping[str, bool]):
     def __len__(self) -> int:
         return len(self._values)
 
-    def set(self, name: str, on: bool) -> None:
+    def set(self, name: Literal["speaks", "sounds"], on: bool) -> None:
         """Change a switch, and have the browser keep it."""
         self._values[name] = on
         self._keep(name, "yes" if on else "no")

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Mapping
-from typing import Literal
 
 import viser
 
-from onpath.app.channel.messages import Hello, Refused, Store, Wait, encoded
+from onpath.app.channel.messages import Hello, Refused, Store, StoredName, Wait, encoded
 from onpath.app.common.error_log import log_error
 from onpath.app.page.page_context import Look
 from onpath.app.page.teacher_context import TeacherChoices
@@ -18,8 +17,6 @@ from onpath.app.simulation.scheduled_lab import ScheduledLab
 from onpath.app.viser_adapter.data_channel import DataChannel, PageStream
 from onpath.app.viser_adapter.secure_connection import SecureConnection
 from onpath.lessons.words import Words
-
-Name = Literal["teacher", "speaks", "sounds", "first_minute"]
 
 
 class Visit:
@@ -122,7 +119,7 @@ class Visit:
         kept = {"speaks": hello.speaks, "sounds": hello.sounds, "first_minute": hello.first_minute}
         return kept | self._kept
 
-    def keep(self, key: Name, value: str) -> None:
+    def keep(self, key: StoredName, value: str) -> None:
         """Have the browser keep a value, or forget it if it is empty. Thread-safe."""
         self._kept[key] = value
         self._tell(key, Store(key, value))

@@ -51,8 +51,12 @@ def _laws(robot: Robot, words: Words) -> Iterator[Found]:
 
 def _paths(words: Words) -> Iterator[Found]:
     for name in presets():
-        send = [message_of(c.ChoosePath(name))]
-        yield Found(kind="path", label=path_label(name, words), text="", send=send)
+        yield Found(
+            kind="path",
+            label=path_label(name, words),
+            text="",
+            send=[message_of(c.ChoosePath(name))],
+        )
 
 
 def _lessons(course: Course, words: Words) -> Iterator[Found]:
