@@ -10,7 +10,7 @@ import numpy as np
 import viser
 import zstandard
 
-from onpath.app.channel.messages import Hello, Seen, encoded
+from onpath.app.channel.messages import Seen, encoded
 from onpath.app.common.per_thread import per_thread
 
 SEEN = encoded(Seen()).decode()
@@ -58,7 +58,7 @@ def hello(page: str, **kept: str) -> str:
         page: its number, which viser's websocket shows as well.
         kept: what the browser keeps; see `Hello`.
     """
-    return encoded(Hello(page=page, **kept)).decode()
+    return msgspec.json.encode({"is": "hello", "page": page, **kept}).decode()
 
 
 class MessageHeader(msgspec.Struct):

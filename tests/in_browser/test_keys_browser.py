@@ -106,7 +106,7 @@ def test_no_key_of_lab_or_lesson_moves_the_camera(tab: Tab, opposite: bool) -> N
     """Keys that could move it in opposite directions are not held down together."""
     tab.ask(c.SetRunning(False))
     pressed = [
-        ("Control+" if key.modifier else "") + NAMES.get(key.hotkey, key.hotkey.lower())
+        ("Control+" if key.control else "") + NAMES.get(key.hotkey, key.hotkey.lower())
         for key in KEYS
         if key.hotkey != OPENS
     ]

@@ -80,7 +80,11 @@ def test_the_robots_stay_in_sight(tab: Tab, sizes: list[tuple[int, int]], lesson
         upright = width <= 0.8 * height
         view = tab.display
         assert isinstance(view, LabFeed)
-        wait_for(lambda v=view, u=upright: v.page.is_ready and v.page._narrow == u)
+        wait_for(
+            lambda v=view, u=upright: (
+                (page := v.page) is not None and page.is_ready and page._narrow == u
+            )
+        )
         wait_for(lambda u=upright: bool(tab.page.locator(SHEET).count()) == u)
         wait_for(lambda: in_sight(tab), state=lambda: str(seen(tab)))
         tab.ask(c.SetRunning(False))

@@ -254,7 +254,9 @@ def test_a_bound_is_missed_for_good_at_the_first_value_beyond_it() -> None:
         missed += 1
         chosen = record.chosen(check.robot, check)
         values, times = record.values[check.robot][check.quantity], record.times
-        beyond = values > check.below if check.stat == "max" else values < check.above
+        bound = check.below if check.stat == "max" else check.above
+        assert bound is not None
+        beyond = values > bound if check.stat == "max" else values < bound
         assert beyond[chosen & (times == found.broken)].all()
         assert not beyond[chosen & (times < found.broken)].any()
         assert f"missed at {found.broken:.1f} s" in found.words

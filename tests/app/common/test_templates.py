@@ -108,7 +108,7 @@ def view_of(run: LessonRun) -> LessonView:
 
 
 def heading(text: str) -> str:
-    return lesson_message(view_of(titled(text)[1]), ROBOT)["head"]
+    return lesson_message(view_of(titled(text)[1]), ROBOT).head
 
 
 def entry(text: str) -> str:
@@ -207,7 +207,7 @@ def pieces(run: LessonRun, words: Words) -> Iterator[str]:
     for notes in answered(step, run):
         run.progress = replace(run.progress, notes={lesson.name: notes})
         message = lesson_message(view_of(run), ROBOT)
-        yield from map(str, (message["head"], *message["sections"].values(), message["pager"]))
+        yield from map(str, (message.head, *message.sections.values(), message.pager))
     for block in step.predictions():
         sketch = Answer(times=(0.0, 1.0), values=(0.0, 1.0))
         ways = [Progress(notes={lesson.name: Notes(answers={str(run.index): sketch})})]

@@ -178,6 +178,7 @@ def test_a_file_that_is_being_made_does_not_delay_the_page(
         wait_for_views(server, 1)
         (feed,), (lab,) = feeds(server).values(), server.thread.labs
         wait_for(lambda: lab.simulation.time > 0, 60)  # its loops are compiled first
+        assert feed.page is not None
         feed.page.exporter.csv()
         assert begun.wait(60)
         lab.lab.post(c.OpenLesson(next(iter(lab.lab.lessons.course.lessons))))

@@ -259,6 +259,7 @@ def test_a_page_is_replaced_when_no_frame_shows_it(monkeypatch: pytest.MonkeyPat
         (entry,) = server.registry._entries.values()
         (visit,) = server.visits
         page = next(iter(feeds(server).values())).page
+        assert page is not None
         show = page.show
 
         def shown_slowly(snapshot: Any) -> None:

@@ -15,9 +15,8 @@ from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
 from onpath.app.server.page_files import PART, ChannelDelivery, PageFiles
 from onpath.lessons.words import ENGLISH, Words
-from tests.app.server.test_page_data import Script, ticket_of
+from tests.app.server.test_page_data import Script
 from tests.support.lab import do, new_lab
-from tests.support.student import Student
 from tests.support.waiting import wait_for
 
 CIRCLE = "x,y\n0,0.05\n0.05,0\n0,-0.05\n-0.05,0\n0,0.05\n"
@@ -90,10 +89,8 @@ def server() -> Iterator[LabServer]:
 
 @pytest.fixture
 def script(server: LabServer) -> Iterator[Script]:
-    with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
-        student.open()
-        with Script(server, ticket_of(student)) as script:
-            yield script
+    with Script(f"ws://127.0.0.1:{server.server.get_port()}") as script:
+        yield script
 
 
 def say(script: Script, kind: str, /, **fields: Any) -> None:

@@ -151,8 +151,8 @@ class Served(LabProcess):
         self.kill()
         self._records.close()
 
-    def student(self, channel: bool = False) -> Student:
-        return Student(f"ws://127.0.0.1:{self.port}", channel=channel)
+    def student(self) -> Student:
+        return Student(f"ws://127.0.0.1:{self.port}")
 
 
 @pytest.fixture
@@ -224,7 +224,7 @@ def test_a_suspended_process_does_not_hang(
 @linux_only
 def test_a_process_that_gets_a_tenth_of_the_machine_does_not_hang(served: Served) -> None:
     """Its labs do dear work meanwhile, and go on afterwards."""
-    with served.student(channel=True) as first, served.student() as second:
+    with served.student() as first, served.student() as second:
         for student in (first, second):
             student.open()
             student.read(lambda student=student: student.moving > 10)
