@@ -7,11 +7,12 @@ from typing import Literal
 
 from onpath.app.channel.messages import StoredName
 
-DEFAULTS = {"speaks": True, "sounds": False}
+Switch = Literal["speaks", "sounds"]
+DEFAULTS: dict[Switch, bool] = {"speaks": True, "sounds": False}
 """Whether a screen reader speaks about the robots, and whether the distances are heard as tones."""
 
 
-class Preferences(Mapping[str, bool]):
+class Preferences(Mapping[Switch, bool]):
     """The switches of one browser, by name; see `DEFAULTS`.
 
     Args:
@@ -30,16 +31,16 @@ class Preferences(Mapping[str, bool]):
             name: known.get(kept.get(name, ""), usual) for name, usual in DEFAULTS.items()
         }
 
-    def __getitem__(self, name: str) -> bool:
+    def __getitem__(self, name: Switch) -> bool:
         return self._values[name]
 
-    def __iter__(self) -> Iterator[str]:
+    def __iter__(self) -> Iterator[Switch]:
         return iter(self._values)
 
     def __len__(self) -> int:
         return len(self._values)
 
-    def set(self, name: Literal["speaks", "sounds"], on: bool) -> None:
+    def set(self, name: Switch, on: bool) -> None:
         """Change a switch, and have the browser keep it."""
         self._values[name] = on
         self._keep(name, "yes" if on else "no")

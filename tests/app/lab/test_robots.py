@@ -287,6 +287,7 @@ def test_the_panel_of_a_flexible_link_is_that_of_every_robot_that_has_one(
         overlays=given,
         context=given,
         reset_view=given,
+        draw=given,
     )
     for entry in ROBOTS.values():
         first: Any = SimpleNamespace(key=SimpleNamespace(robot=entry.name))

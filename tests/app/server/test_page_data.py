@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import secrets
+import time
 from collections.abc import Iterator
 from functools import partial
 from typing import Any
@@ -20,7 +21,8 @@ from onpath.app.page.page import Page
 from onpath.app.server.lab_server import LabServer
 from onpath.app.server.server_options import ServerOptions
 from onpath.app.viser_adapter.data_channel import SUBPROTOCOL
-from tests.bench.client_protocol import hello
+from tests.bench.client_protocol import SEEN, hello
+from tests.bench.simulated_browser import SEES
 from tests.support import waiting
 from tests.support.own_socket import feeds
 from tests.support.student import Student
@@ -61,11 +63,22 @@ class Script:
     def read(self, kind: str) -> dict[str, Any]:
         """The next message of a kind."""
         while True:
-            message = msgspec.json.decode(self.socket.recv(WAIT))
+            message = msgspec.json.decode(self._received())
             told = self.told.get("state", {}) if message["is"] == "state" else {}
             self.told[message["is"]] = message = {**told, **message}
             if message["is"] == kind:
                 return message
+
+    def _received(self) -> str | bytes:
+        """The next message; the page tells that it is drawn while none comes."""
+        end = time.monotonic() + WAIT
+        while True:
+            try:
+                return self.socket.recv(SEES)
+            except TimeoutError:
+                if time.monotonic() > end:
+                    raise
+                self.socket.send(SEEN)
 
     def read_until(self, kind: str, condition: Any) -> dict[str, Any]:
         """The next message of a kind for which a condition holds."""

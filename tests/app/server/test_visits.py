@@ -93,7 +93,7 @@ def test_a_picture_gets_the_lab_of_its_page_whenever_it_comes(server: LabServer)
         assert codes[0] != codes[1]
         picture = Picture(url(server), own.page)
         visits = {visit.hello.page: visit for visit in server.visits}
-        wait_for(lambda: visits[own.page].feed and visits[own.page].feed.page)
+        wait_for(lambda: (feed := visits[own.page].feed) is not None and feed.page)
         assert visits[other.page].client is None
         assert server.registry.find(codes[0]).client == visits[own.page].number  # type: ignore[union-attr]
         picture.close()
