@@ -14,7 +14,7 @@ from onpath.app.page.panels.glossary import glossary_html
 from onpath.app.page.panels.keys import help_text
 from onpath.app.page.panels.slow_presses import on_menu_press
 from onpath.app.page.panels.widgets import Post, add_menu, on_user_update
-from onpath.app.page.preferences import Preferences
+from onpath.app.page.preferences import Preferences, Switch
 from onpath.lessons.words import Words, language_name, languages
 
 HALF = "dark"
@@ -56,9 +56,13 @@ class PageMenus:
                 shown=language_name(words.language),
             )
             large = gui.add_checkbox(words("lesson.presenting"), self._presenting)
-            labels = {"speaks": words("display.speaks"), "sounds": words("display.sounds")}
+            labels: dict[Switch, str] = {
+                "speaks": words("display.speaks"),
+                "sounds": words("display.sounds"),
+            }
             boxes = {
-                name: gui.add_checkbox(labels[name], on) for name, on in self._preferences.items()
+                name: gui.add_checkbox(label, self._preferences[name])
+                for name, label in labels.items()
             }
 
         def chosen(command: c.Command) -> None:

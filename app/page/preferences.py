@@ -8,11 +8,11 @@ from typing import Literal
 from onpath.app.channel.messages import StoredName
 
 Switch = Literal["speaks", "sounds"]
-DEFAULTS: dict[Switch, bool] = {"speaks": True, "sounds": False}
+DEFAULTS = {"speaks": True, "sounds": False}
 """Whether a screen reader speaks about the robots, and whether the distances are heard as tones."""
 
 
-class Preferences(Mapping[Switch, bool]):
+class Preferences(Mapping[str, bool]):
     """The switches of one browser, by name; see `DEFAULTS`.
 
     Args:
@@ -31,10 +31,10 @@ class Preferences(Mapping[Switch, bool]):
             name: known.get(kept.get(name, ""), usual) for name, usual in DEFAULTS.items()
         }
 
-    def __getitem__(self, name: Switch) -> bool:
+    def __getitem__(self, name: str) -> bool:
         return self._values[name]
 
-    def __iter__(self) -> Iterator[Switch]:
+    def __iter__(self) -> Iterator[str]:
         return iter(self._values)
 
     def __len__(self) -> int:
