@@ -85,7 +85,7 @@ KEYS_MADE = (
     *("side.", "laws.", "obstruction.", "aim.", "key.", "keyname.", "pull.", "plot.", "axis."),
     *("check.above", "check.below", "gains.across", "gains.along"),
     *("lesson.back", "lesson.again", "lesson.close", "site.control.", "symbol.", "show."),
-    *("standalone.recorded_", "arena."),
+    *("standalone.recorded_", "arena.", "site.why."),
     *("search.kind_", "search.of_", "aid.", "robots.differs_", "export.", "form."),
     *("readout.distance", "readout.now", "readout.most"),
     *ELSEWHERE,
