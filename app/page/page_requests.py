@@ -20,6 +20,7 @@ from onpath.app.channel.sheet_messages import (
 from onpath.app.common.access_codes import shown
 from onpath.app.exports.exporter import Exporter
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
+from onpath.app.page.page import Page
 from onpath.app.page.page_context import PageContext
 from onpath.app.view.comparing import compare_sheet, compared
 from onpath.app.view.sheets import SheetContext, sheet_of
@@ -35,19 +36,10 @@ class PageRequests:
 
     Args:
         exporter: compares laws.
-        reset_view: resets the camera.
-        draw: begins to draw a path with the mouse, or ends it.
     """
 
-    def __init__(
-        self,
-        context: PageContext,
-        exporter: Exporter,
-        reset_view: Callable[[], None],
-        draw: Callable[[], None],
-    ) -> None:
+    def __init__(self, context: PageContext, exporter: Exporter) -> None:
         self._context, self._exporter, self._text = context, exporter, context.text
-        self._reset_view, self._draw = reset_view, draw
         self._sheets = SheetContext(
             course=context.course,
             code=shown(context.code),
@@ -55,8 +47,14 @@ class PageRequests:
             preferences=self._text.preferences,
         )
 
-    def serve(self, request: Request, snapshot: PageSnapshot, tell: Tell) -> None:
-        """Serve a request; what takes long is answered later."""
+    def serve(
+        self, request: Request, snapshot: PageSnapshot, page: Page | None, tell: Tell
+    ) -> None:
+        """Serve a request; what takes long is answered later.
+
+        Args:
+            page: viser's part, if it is there.
+        """
         text, words = self._text, self._text.words
         match request:
             case Ask(what=what):
@@ -64,9 +62,11 @@ class PageRequests:
             case Prefer(name=name, on=on):
                 text.preferences.set(name, on)
             case Freehand():
-                self._draw()
+                if page is not None:
+                    page.draw()
             case ResetView():
-                self._reset_view()
+                if page is not None:
+                    page.reset_view()
             case AskSummary():
                 text.narration.ask_summary()
             case EnterLab(code=code):

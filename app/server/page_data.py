@@ -83,13 +83,7 @@ class PageData:
         self._language = ""
         self._state: StateMessage | None = None
         self._files = PageFiles(own.post, context.code if context.keep_days else "")
-        self._page: Page | None = None
-        self._server = PageRequests(
-            context=context,
-            exporter=self._files.exporter,
-            reset_view=self._reset_view,
-            draw=self._draw,
-        )
+        self._server = PageRequests(context, self._files.exporter)
         self._form = PageForm(own.post)
         self._is_resized = self._skips = False
         self._requests, self._answers = deque[Request](), deque[Struct](maxlen=MOST_REQUESTS)
@@ -161,13 +155,13 @@ class PageData:
             page: viser's part, if it is there.
             robot: of the lab.
         """
-        text, self._page = self._text, page
+        text = self._text
         text.follow(snapshot)
         if self._skips:
             self._skips = False
             text.end_introduction()
         while self._requests:
-            self._server.serve(self._requests.popleft(), snapshot, self._answer)
+            self._server.serve(self._requests.popleft(), snapshot, page, self._answer)
         if self._stream.opened != self._opened or self._stream.is_busy:
             return
         if not self._stream.is_open:
@@ -210,14 +204,6 @@ class PageData:
         elif self._view is None or self._view[0] is not robot:
             self._view = robot, seen_at_first(stage_of(robot), robot)
         return self._view[1]
-
-    def _draw(self) -> None:
-        if (page := self._page) is not None:
-            page.draw()
-
-    def _reset_view(self) -> None:
-        if (page := self._page) is not None:
-            page.reset_view()
 
     def _answer(self, answer: Struct) -> None:
         """Send an answer with the next messages. Thread-safe."""
