@@ -32,7 +32,7 @@ TOUCHED = {
     "_icons.py": "ICONS_DIR svg_from_icon",
     "_messages.py": (
         "CommandTriggerMessage FileTransferPart FileTransferPartAck FileTransferStartUpload"
-        " GuiUpdateMessage HotkeyKey ImageMessage ImageProps KeyModifier"
+        " GuiUpdateMessage ImageMessage ImageProps"
         " LocalStorageGetItemRequestMessage LocalStorageGetItemResponseMessage Message"
         " SceneNodeClickMessage SceneNodeDragMessage SceneNodeUpdateMessage SetCameraFovMessage"
         " SetCameraLookAtMessage SetCameraPositionMessage SetCameraUpDirectionMessage"
