@@ -20,6 +20,7 @@ pytest.importorskip("playwright")
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.loops.loop_cache import LoopCache
+from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_server import LabServer
 from onpath.app.server.tab_visibility import PATIENCE, TICK
 from tests.support.browser import CHROMIUM, COARSER, PLAIN, wait_for
@@ -87,17 +88,23 @@ def window(server: LabServer, tmp_path: Path) -> Iterator[Window]:
 
 
 class Meter:
-    """Counts the bytes that are written to the only browser."""
+    """Counts the bytes that are written to the only browser, through both of its websockets."""
 
-    def __init__(self, server: LabServer) -> None:
-        (connection,) = server.server._websock_server._live_connections.values()
-        self._clock = FrameClock(server.thread)
-        self._write, self._sent = connection.transport.write, 0
-        connection.transport.write = self._count
+    def __init__(self, server: LabServer, view: LabFeed) -> None:
+        visers = server.server._websock_server._live_connections
+        wait_for(lambda: visers)
+        self._clock, self._sent = FrameClock(server.thread), 0
+        for connection in (*visers.values(), view._data._stream._connection):
+            self._count(connection.transport)
 
-    def _count(self, data: bytes | bytearray | memoryview) -> None:
-        self._sent += len(data)
-        self._write(data)
+    def _count(self, transport: Any) -> None:
+        write = transport.write
+
+        def counted(data: bytes | bytearray | memoryview) -> None:
+            self._sent += len(data)
+            write(data)
+
+        transport.write = counted
 
     def rate(self, seconds: float) -> float:
         """Measure the data rate, [B/s], in as many frames as should pass in these seconds."""
@@ -109,10 +116,9 @@ class Meter:
 def test_a_covered_tab_costs_nothing_and_then_shows_the_current_state(
     server: LabServer, window: Window
 ) -> None:
-    view = wait_for(lambda: [lab.display for lab in server.thread.labs if lab.display is not None])[
-        0
-    ]
-    (lab,), meter = server.thread.labs, Meter(server)
+    (lab,) = wait_for(lambda: server.thread.labs)
+    view = wait_for(lambda: lab.display)
+    meter = Meter(server, view)
     wait_for(lambda: lab.simulation.time > 1.0)
 
     def seen_throughout() -> float:
