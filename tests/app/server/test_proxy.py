@@ -85,7 +85,8 @@ def test_a_student_whose_process_is_killed_goes_on_with_the_other(running: Runni
         assert not student.has_widget("Commit") and not student.has_widget("Skip")  # predicted
         student.set("Free lab", "Free lab")
         student.read(lambda: not student.sees("Step 2 of"))
-        assert student.find("Path")["value"] == "clover" and student.find("K2")["value"] == 44.0
+        for label, value in (("Path", "clover"), ("K2", 44.0)):
+            student.read(lambda label=label, value=value: student.find(label)["value"] == value)
         killed.start_again()
     quiet(running)
     return_to(killed, running, prefix)
