@@ -70,8 +70,8 @@ class PageMenus:
             self._post(command)
 
         on_user_update(large, lambda on: chosen(c.Set("presenting", on)))
-        for name, box in boxes.items():
-            on_user_update(box, partial(self._preferences.set, name))
+        for name in labels:
+            on_user_update(boxes[name], partial(self._preferences.set, name))
         return close
 
     def _open_help(self) -> Callable[[], None]:
