@@ -94,7 +94,9 @@ class Meter:
         visers = server.server._websock_server._live_connections
         wait_for(lambda: visers)
         self._clock, self._sent = FrameClock(server.thread), 0
-        for connection in (*visers.values(), view._data._stream._connection):
+        own = view._data._stream._connection
+        assert own is not None
+        for connection in (*visers.values(), own):
             self._count(connection.transport)
 
     def _count(self, transport: Any) -> None:
