@@ -90,6 +90,7 @@ def server() -> Iterator[LabServer]:
 @pytest.fixture
 def script(server: LabServer) -> Iterator[Script]:
     with Script(f"ws://127.0.0.1:{server.server.get_port()}") as script:
+        script.wait()  # what comes before the lab is there is refused
         yield script
 
 
@@ -120,7 +121,6 @@ def send(script: Script, number: int, content: bytes, **use: Any) -> dict[str, A
 
 
 def test_the_robots_follow_the_path_in_a_file_of_the_page(script: Script) -> None:
-    script.read("path")
     assert send(script, 1, CIRCLE.encode(), size=60.0)["state"] == "used"
 
     def is_there(path: dict[str, Any]) -> bool:
