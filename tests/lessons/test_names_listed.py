@@ -35,7 +35,7 @@ def test_nothing_is_left_out() -> None:
 
 
 def test_drawings_are_the_switches_of_the_page() -> None:
-    assert set(DRAWINGS) == set(SWITCHES) == set(Switches.__dataclass_fields__)
+    assert set(DRAWINGS) == set(SWITCHES) <= set(Switches.__dataclass_fields__)
 
 
 def test_the_command_prints_them(capsys: pytest.CaptureFixture[str]) -> None:

@@ -213,7 +213,7 @@ def page_fault(said: Behaviour, scene: StepSetup, words: Words) -> str:
     if (said.name in shown) == said.absent:
         return f"the {said.verb}s of the step are {_listed(shown)}"
     if said.verb == "plot" and not said.absent:
-        label = words(f"axis.{said.name}")
+        label = words("plot.phase" if said.name == "phase" else f"axis.{said.name}")
         if not any(word in written.lower() for word in _stems(label)):
             return f"the plot is called {label!r}"
     if said.verb == "control" and not any(
