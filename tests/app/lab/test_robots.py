@@ -275,7 +275,9 @@ def test_the_panel_of_a_flexible_link_is_that_of_every_robot_that_has_one(
     bending: RobotEntry, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(panel_factory, "FlexiblePanel", lambda **given: given)
-    given: Any = SimpleNamespace(stage=SimpleNamespace(pulls={"plane": None}), language="en")
+    given: Any = SimpleNamespace(
+        stage=SimpleNamespace(pulls={"plane": None}), language="en", switches=None
+    )
     factory = panel_factory.PanelFactory(
         gui=given,
         words=given,
