@@ -375,8 +375,6 @@ class StateMessage(Struct, frozen=True, kw_only=True, tag_field="is", tag="state
         laws: names of the robots' control laws; a typed one is its own name.
         shared: the share code that was made last; may be empty.
         scene: number of viser's client for which the lab draws the robots; 0 without one.
-        path: name of the path; "edited" or "drawn" if it is the user's own.
-        refusals: why the law that was typed last for a robot was refused; may be empty.
     """
 
     v: int
@@ -409,8 +407,6 @@ class StateMessage(Struct, frozen=True, kw_only=True, tag_field="is", tag="state
     rows: Annotated[list[dict[str, Any]], Meta(extra={"typescript": "RowData[]"})]
     laws: list[str]
     shared: str
-    path: str
-    refusals: list[str]
     scene: int = 0
 
 

@@ -68,6 +68,4 @@ def state_message(
         rows=row_data(snapshot.key.fields, is_level_set, words),
         laws=list(run.laws.values()),
         shared=snapshot.shared,
-        path=snapshot.edit.name,
-        refusals=[snapshot.refused.get(side, "") for side in run.laws],
     )

@@ -472,10 +472,6 @@ export interface StateMessage {
     laws: string[]
     /** the share code that was made last; may be empty. */
     shared: string
-    /** name of the path; "edited" or "drawn" if it is the user's own. */
-    path: string
-    /** why the law that was typed last for a robot was refused; may be empty. */
-    refusals: string[]
     /** number of viser's client for which the lab draws the robots; 0 without one. */
     scene: number
 }

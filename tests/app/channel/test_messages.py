@@ -126,15 +126,11 @@ def test_a_mutated_message_is_read_or_refused(text: str, chance: random.Random) 
 
 VALUES: dict[str, st.SearchStrategy[Any]] = {
     name: st.text(max_size=2)
-    for name in (
-        *("language", "robot", "message", "level", "frozen", "waits", "shared", "machine"),
-        "path",
-    )
+    for name in ("language", "robot", "message", "level", "frozen", "waits", "shared", "machine")
 } | {name: st.integers(0, 2) for name in ("v", "rate", "achieved", "messages", "height", "arrow")}
 VALUES |= {name: st.booleans() for name in ("together", "undo", "presenting", "own", "drawn")}
 VALUES |= {
-    name: st.lists(st.text(max_size=1))
-    for name in ("titles", "names", "texts", "captions", "laws", "refusals")
+    name: st.lists(st.text(max_size=1)) for name in ("titles", "names", "texts", "captions", "laws")
 }
 VALUES |= {name: st.lists(st.booleans()) for name in ("clocks", "stopped")}
 VALUES |= {
