@@ -341,7 +341,6 @@ class StateMessage(Struct, frozen=True, kw_only=True, tag_field="is", tag="state
     times a second.
 
     Attributes:
-        v: number of the protocol.
         language: of the texts.
         robot: its name.
         titles: of the robots: names of their control laws.
@@ -377,7 +376,6 @@ class StateMessage(Struct, frozen=True, kw_only=True, tag_field="is", tag="state
         scene: number of viser's client for which the lab draws the robots; 0 without one.
     """
 
-    v: int
     language: str
     robot: str
     titles: list[str]

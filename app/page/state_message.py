@@ -10,7 +10,6 @@ from onpath.app.channel.messages import Said, StateMessage
 from onpath.app.lab.plot_rows import row_data
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.scene.projection import Seen
-from onpath.app.viser_adapter.data_channel import VERSION
 from onpath.lessons.labels import robot_label
 from onpath.lessons.sides import displayed_names, law_text, side_titles
 from onpath.lessons.words import Words
@@ -38,7 +37,6 @@ def state_message(
     is_level_set = snapshot.parameters["across"] == LEVEL_SET
     names = displayed_names(laws, words)
     return StateMessage(
-        v=VERSION,
         language=words.language,
         robot=snapshot.key.robot,
         titles=[titles[side] for side in laws],

@@ -18,9 +18,8 @@ from websockets.protocol import State
 from onpath.app.common.error_log import log_error
 from onpath.app.viser_adapter.secure_connection import SecureConnection
 
-VERSION = 2
 FAMILY = "onpath-"
-SUBPROTOCOL = f"{FAMILY}{VERSION}"
+SUBPROTOCOL = f"{FAMILY}2"
 GREETING = 90.0  # [s] within which the greeting must come; a page and its way may be slow
 NO_GREETING = 4001  # closes a connection whose first message is no valid greeting
 MOST_UNSENT = 1 << 16  # [B] unsent, beyond which a page gets no further data

@@ -411,8 +411,6 @@ export interface Said {
 /** What the lab is called and set to: everything at first, then what has changed, at most ten times a second. */
 export interface StateMessage {
     is: "state"
-    /** number of the protocol. */
-    v: number
     /** of the texts. */
     language: string
     /** its name. */

@@ -127,7 +127,7 @@ def test_a_mutated_message_is_read_or_refused(text: str, chance: random.Random) 
 VALUES: dict[str, st.SearchStrategy[Any]] = {
     name: st.text(max_size=2)
     for name in ("language", "robot", "message", "level", "frozen", "waits", "shared", "machine")
-} | {name: st.integers(0, 2) for name in ("v", "rate", "achieved", "messages", "height", "arrow")}
+} | {name: st.integers(0, 2) for name in ("rate", "achieved", "messages", "height", "arrow")}
 VALUES |= {name: st.booleans() for name in ("together", "undo", "presenting", "own", "drawn")}
 VALUES |= {
     name: st.lists(st.text(max_size=1)) for name in ("titles", "names", "texts", "captions", "laws")
