@@ -3,6 +3,9 @@
 A setting is a field of `LabSettings`, and its texts in other languages are those of a parameter:
 `parameter-NAME-label`, `-help`, `-unit` and `-option-OPTION` in their catalogues. Command, page,
 lessons, share codes and help follow from the declaration.
+
+They are declared here, even those of what a page shows, because a lesson's step sets them, and
+lessons know only `models`.
 """
 
 from __future__ import annotations
@@ -41,7 +44,7 @@ Kept = Literal["code", "lab", "nowhere"]
 
 
 @dataclass(frozen=True, slots=True)
-class Setting:
+class LabSetting:
     """Declaration of one of the lab's own settings.
 
     Attributes:
@@ -69,7 +72,7 @@ def own(declared: Any, *, kept: Kept = "code", by: Role = "lab", of_robot: bool 
 
     Args:
         declared: what `number`, `choice` or `switch` returns.
-        kept, by, of_robot: see `Setting`.
+        kept, by, of_robot: see `LabSetting`.
 
     Raises:
         ValueError: it is kept in share codes, which anybody makes, and not everybody may set it; or
@@ -80,7 +83,7 @@ def own(declared: Any, *, kept: Kept = "code", by: Role = "lab", of_robot: bool 
     if kept == "lab" and of_robot:
         raise ValueError("the settings of single robots are kept in set-ups")
     spec, default = declared.metadata["spec"], declared.default
-    setting = Setting(spec=spec, default=default, by=by, kept=kept, of_robot=of_robot)
+    setting = LabSetting(spec=spec, default=default, by=by, kept=kept, of_robot=of_robot)
     return dataclasses.field(default=default, metadata={"setting": setting})
 
 
@@ -238,13 +241,13 @@ def settings_of_wall(wall: Wall) -> dict[str, Any]:
     return {"wall": True} | {f"wall_{name}": value for name, value in asdict(wall).items()}
 
 
-SETTINGS: Mapping[str, Setting] = MappingProxyType(
+SETTINGS: Mapping[str, LabSetting] = MappingProxyType(
     {field.name: field.metadata["setting"] for field in dataclasses.fields(LabSettings)}
 )
 """Name -> declaration of each field of `LabSettings`."""
 
 
-def settings_kept(where: Kept, of_robot: bool = False) -> dict[str, Setting]:
+def settings_kept(where: Kept, of_robot: bool = False) -> dict[str, LabSetting]:
     """Name -> declaration of the settings that are kept somewhere.
 
     Args:

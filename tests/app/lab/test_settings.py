@@ -143,7 +143,7 @@ def test_a_lesson_s_step_restores_what_a_set_up_has(name: str) -> None:
 def test_only_those_who_may_set_something_do(monkeypatch: pytest.MonkeyPatch) -> None:
     """The table of roles: none of today's settings is kept from its lab, but one may be."""
     for by in ROLES:
-        only = {"rate": lab_settings.Setting(SETTINGS["rate"].spec, 1.0, by, "code", False)}
+        only = {"rate": lab_settings.LabSetting(SETTINGS["rate"].spec, 1.0, by, "code", False)}
         monkeypatch.setattr("onpath.app.lab.commands.settings.SETTINGS", only)
         for role, order in ORDERS.items():
             lab = new_lab()
