@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -50,6 +51,12 @@ class Words:
     def get(self, key: str, default: str) -> str:
         """The text of a key, or a default."""
         return self(key) if key in self._plain or key in self._catalogue else default
+
+    def unfilled(self, keys: Mapping[str, Sequence[str]]) -> dict[str, str]:
+        """The texts of keys in which a page fills in the {names} of each."""
+        return {
+            key: self(key, **{name: f"{{{name}}}" for name in names}) for key, names in keys.items()
+        }
 
     def number(self, value: float, digits: int = 4) -> str:
         """A number with some significant digits and the decimal separator of the language."""

@@ -45,9 +45,7 @@ def words_message(language: str) -> bytes:
     """The message with the texts of a language: key -> text of every message."""
     words = Words(language)
     messages = player_words(words) | {key: words(key) for key in _PLAIN}
-    messages |= {
-        key: words(key, **{name: f"{{{name}}}" for name in names}) for key, names in _FILLED.items()
-    }
+    messages |= words.unfilled(_FILLED)
     messages["design.upload_hint"] = words("design.upload_hint", most=f"{MOST_BYTES / 1e6:g}")
     texts = messages | form_words(words)
     return encoded(WordsMessage(language, texts))

@@ -20,7 +20,4 @@ _FILLED = {
 
 def player_words(words: Words) -> dict[str, str]:
     """Key -> text of every message."""
-    messages = {key: words(key) for key in _PLAIN}
-    return messages | {
-        key: words(key, **{name: f"{{{name}}}" for name in names}) for key, names in _FILLED.items()
-    }
+    return {key: words(key) for key in _PLAIN} | words.unfilled(_FILLED)

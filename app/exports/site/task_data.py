@@ -63,11 +63,7 @@ MESSAGES = {
 
 def check_words(words: Words) -> dict[str, str]:
     """The messages of the checks, with places for their values."""
-    messages = {
-        key: words(key, **{name: f"{{{name}}}" for name in names})
-        for key, names in MESSAGES.items()
-    }
-    return messages | {"point": words("report.point")}
+    return words.unfilled(MESSAGES) | {"point": words("report.point")}
 
 
 def task_data(

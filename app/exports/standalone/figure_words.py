@@ -69,9 +69,7 @@ def run_titles(runs: Sequence[Trajectory], words: Words) -> list[str]:
 def figure_words(words: Words) -> dict[str, str]:
     """Key -> text of every message that a figure may show."""
     messages = {key: words(key) for key in PLAIN}
-    messages |= {
-        key: words(key, **{name: f"{{{name}}}" for name in names}) for key, names in _FILLED.items()
-    }
+    messages |= words.unfilled(_FILLED)
     widths = {"radius": f"{TUBE * 1e3:.0f}", "least": f"{2 * TUBE * 1e3:.0f}"}
     messages |= {key: words(key, **widths) for key in _FAULTS}
     shortest = f"{1e3 * SHORTEST:.0f}"
