@@ -13,7 +13,7 @@ MOST_LINES = 3  # of one robot in a row
 XI = ("xi", "xi_rate")
 """Fields whose unit is another one with a level set."""
 ALWAYS = ("distance", "theta", "theta_ref", "y", "force")
-"""Fields that every frame of the data channel has; see snapshots/data_frame.py."""
+"""Fields that every frame of the data channel has; see app/channel/data_frame.py."""
 AREA = 100.0  # a level set is 100 mm² where the distance to a circle of 50 mm is 1 mm
 
 Fields = tuple[tuple[str, int], ...]
@@ -47,13 +47,7 @@ class PlotRow:
 
 
 ROWS = (
-    PlotRow(
-        name="distance",
-        field="distance",
-        scale=1e3,
-        finest=0.01,
-        least=(0.0, 5.0),
-    ),
+    PlotRow(name="distance", field="distance", scale=1e3, finest=0.01, least=(0.0, 5.0)),
     PlotRow(name="speed", field="speed", scale=1e3, finest=0.1, least=(0.0, 10.0)),
     PlotRow(
         name="torques",
@@ -64,12 +58,7 @@ ROWS = (
         symbols=("u₁", "u₂", "u₃"),
     ),
     PlotRow(
-        name="across",
-        field="xi",
-        scale=1e3,
-        finest=0.01,
-        least=(-1.0, 1.0),
-        symbols=("ξ₁", "ξ₃"),
+        name="across", field="xi", scale=1e3, finest=0.01, least=(-1.0, 1.0), symbols=("ξ₁", "ξ₃")
     ),
     PlotRow(
         name="across_rate",
