@@ -47,7 +47,7 @@ def lesson_message(run: LessonView, robot: Robot) -> LessonMessage:
     lesson = run.lesson
     if lesson is None:
         return LessonMessage(lesson="", version=run.version)
-    return LessonMessage(
+    message = LessonMessage(
         lesson=lesson.name,
         version=run.version,
         index=run.index,
@@ -61,8 +61,12 @@ def lesson_message(run: LessonView, robot: Robot) -> LessonMessage:
         },
         head=_head(lesson, run),
         pager=part_of_page("lesson/pager.html", pager=pager_of(run), words=run.words),
-        **(_ended(run) if run.ended else _open(lesson, run)),
     )
+    if run.ended:
+        return msgspec.structs.replace(
+            message, sections={END: end_html(run)}, charts=ended_charts(run)
+        )
+    return _with_steps(message, lesson, run)
 
 
 def measured(run: LessonView) -> MeasuredMessage:
@@ -84,28 +88,18 @@ def _head(lesson: Lesson, run: LessonView) -> str:
     )
 
 
-def _ended(run: LessonView) -> dict[str, Any]:
-    return {"sections": {END: end_html(run)}, "charts": ended_charts(run)}
-
-
-def _open(lesson: Lesson, run: LessonView) -> dict[str, Any]:
-    """The open step and, before it, the one whose prediction it shows."""
+def _with_steps(message: LessonMessage, lesson: Lesson, run: LessonView) -> LessonMessage:
+    """The message with the open step and, before it, the one whose prediction it shows."""
     found, index = run.prediction(), run.index
     shown = {index: _parts(lesson, run)}
     if found is not None and int(found[0]) != index:
         shown = {int(found[0]): [_asked(lesson, int(found[0]), run)]} | shown
-    return {
-        "sections": {
-            str(at): step_html(
-                lesson, at, parts, run.words, plays=lesson.steps[at].script is not None
-            )
-            for at, parts in shown.items()
-        },
-        "steps": [
-            _step(step, lesson, i, shown.get(i, []), run) for i, step in enumerate(lesson.steps)
-        ],
-        "notes": _notes(run),
+    sections = {
+        str(at): step_html(lesson, at, parts, run.words, plays=lesson.steps[at].script is not None)
+        for at, parts in shown.items()
     }
+    steps = [_step(step, lesson, i, shown.get(i, []), run) for i, step in enumerate(lesson.steps)]
+    return msgspec.structs.replace(message, sections=sections, steps=steps, notes=_notes(run))
 
 
 def _parts(lesson: Lesson, run: LessonView) -> list[StepPart]:
