@@ -143,7 +143,9 @@ class PageForm:
         drawn = {name: bool(getattr(switches, name)) for name in SWITCHES}
         values = values_in(snapshot, drawn, self._typing, words)
         refused = refusals_in(snapshot)
-        changed = {n: v for n, v in values.items() if self._values.get(n) != v}
+        changed = dict[str, FieldValue]()
+        if values != self._values:
+            changed = {n: v for n, v in values.items() if self._values.get(n) != v}
         why = {n: w for n, w in refused.items() if self._refused.get(n) != w}
         why |= {n: "" for n in self._refused if n not in refused}
         new = {n: k for n, k in heard.items() if self._told.get(n) != k}

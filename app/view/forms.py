@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Any, Literal
+from typing import Any
 
 from onpath.app.channel.messages import FieldValue, FormField, FormNeed, FormOption
 from onpath.lessons.labels import option_label, parameter_help, parameter_label, parameter_unit
@@ -14,35 +14,26 @@ from onpath.models.control.settable import specs
 from onpath.models.systems.parameter_specs import Need, Spec
 from onpath.models.systems.parameters import Parameters
 
-Place = Literal["lab", "step", "figure"]
-ELSEWHERE = ("rate", "presenting", "phase")
-"""Settings of the lab that stand beside its plots, or with the page's look."""
+ELSEWHERE = ("rate", "presenting")
+"""Settings that are not in the lab's form: one is beside its plots, one among the page's own."""
 
 
-def fields_of(
-    place: Place, kind: type[Parameters], laws: Iterable[str], named: Sequence[str] = ()
-) -> list[str]:
-    """The settings that a place shows: of those that can act on a robot under some laws, the lab
-    has all, and a step or a figure those that it names.
+def settings_in_form(kind: type[Parameters], laws: Iterable[str]) -> list[str]:
+    """The settings in a lab's form: those that can act on a robot under some laws, whatever the
+    values of the others.
 
     Args:
         kind: of the robot's parameters.
     """
-    acts = acting(kind, laws)
-    known = {*acts, *SETTINGS}
-    for name, setting in SETTINGS.items():
-        if all({one.name for one in _instead(need)} & known for need in setting.spec.needs):
-            acts.append(name)
-    if place == "lab":
-        return [name for name in acts if name not in ELSEWHERE]
-    return [name for name in dict.fromkeys(named) if name in acts]
-
-
-def acting(kind: type[Parameters], laws: Iterable[str]) -> list[str]:
-    """The settings that can act on a robot under some laws, whatever the values of the others."""
     every = {gain for law in LAWS.values() for gain in law.gain_names}
     used = {gain for law in laws for gain in law_named(law).gain_names}
-    return [name for name in specs(kind) if name in used or name not in every]
+    acts = [name for name in specs(kind) if name in used or name not in every]
+    known = {*acts, *SETTINGS}
+    for name, setting in SETTINGS.items():
+        needs = [{one.name for one in _instead(need)} for need in setting.spec.needs]
+        if name not in ELSEWHERE and all(names & known for names in needs):
+            acts.append(name)
+    return acts
 
 
 def setting_field(
@@ -117,7 +108,7 @@ def choice_field(
     return FormField(name=name, kind="choice", label=label, options=offered, default=default)
 
 
-_PLAIN = (*("form.changed", "form.is_on", "form.off", "form.use"),)
+_PLAIN = ("form.changed", "form.is_on", "form.off", "form.use")
 _FILLED = {
     "form.back": ("value",),
     "form.back_lesson": ("value",),
@@ -132,6 +123,4 @@ _FILLED = {
 def form_words(words: Words) -> dict[str, str]:
     """The messages of every form, in which the page fills in the {names}."""
     messages = {key: words(key) for key in _PLAIN} | {"point": words("report.point")}
-    return messages | {
-        key: words(key, **{name: f"{{{name}}}" for name in names}) for key, names in _FILLED.items()
-    }
+    return messages | words.unfilled(_FILLED)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Literal
 
 from onpath.app.channel.messages import (
     FieldValue,
@@ -28,7 +29,7 @@ from onpath.app.lab.commands import (
 )
 from onpath.app.lab.commands.command_codec import message_of
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of
-from onpath.app.view.forms import ELSEWHERE, drawing_field, fields_of, setting_field
+from onpath.app.view.forms import ELSEWHERE, drawing_field, setting_field, settings_in_form
 from onpath.app.view.laws import suitable
 from onpath.app.view.paths import outline, preset_label
 from onpath.app.view.robots import picture_of
@@ -44,7 +45,7 @@ from onpath.models.control.place import Place
 from onpath.models.control.settable import specs, values_of
 from onpath.models.control.sides import DEFAULT_LAWS, SIDES
 from onpath.models.errors import Message
-from onpath.models.paths.path_design import presets
+from onpath.models.paths.path_design import REACH, presets
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
@@ -52,9 +53,13 @@ from onpath.models.systems.robots import Robot
 SWITCHES = (*DRAWINGS, "zone", "start")
 """What a page can draw besides the robots: fields of `app.page.overlays.Switches`."""
 SHOWN = "show_"
-"""Before the name of one of them in the name of its field, if no lesson names it."""
-FARTHEST = 0.2  # [m], of a control point from the middle of the paths
+"""Begins the names of the fields of those that no lesson names."""
 NO_STEP = FormMessage(place="step", groups=())
+GROUPS: Mapping[str, Literal["first", "deeper"]] = {
+    "setup": "first",
+    **dict.fromkeys(("hand", "gains", "along", "points", "reality", "view", "robot"), "deeper"),
+}
+"""Groups of the form in their order, with their levels."""
 GROUP_OF = {
     **dict.fromkeys(("touch", "wall", "start"), "hand"),
     **dict.fromkeys(("basic", "robot", "path"), "robot"),
@@ -64,6 +69,14 @@ GROUP_OF = {
     "view": "view",
 }
 """Group of a declaration -> group of the form."""
+GROUP_OF_OTHERS = {
+    **dict.fromkeys(("pulse", "reset", "start_on_path", "show_start"), "hand"),
+    **dict.fromkeys(("poles", "defaults"), "gains"),
+    **dict.fromkeys(("add", "remove", "point", "point_z1", "point_z2"), "points"),
+    "identify": "reality",
+    **dict.fromkeys((*DRAWINGS, "show_zone", "view"), "view"),
+}
+"""Group of each field that is no declared setting."""
 FIRST = (
     *("robot", "path", "draw", "file", "undo", "redo", "speed"),
     *(f"{part}{side}" for side in SIDES for part in ("", "typed_", "about_")),
@@ -80,12 +93,13 @@ SECTIONS = {
     "computer": ("control_rate", "look_ahead", "delay"),
     "load": ("counterweights_removed", "payload"),
 }
-"""Headings in the group of the realism; the rest are errors of the model."""
+"""Fields under each heading of the realism; the rest are errors of the model."""
 STATES = {
     "hand": ("copy", "hold_direction", "wall"),
     "gains": ("K1", "K2", "K5"),
     "along": ("speed_profile", "task"),
 }
+"""Fields whose values a closed group shows."""
 CONTROLS = {
     "path": ("path", "rise"),
     "laws": tuple(name for side in SIDES for name in (side, f"typed_{side}")),
@@ -120,7 +134,7 @@ def form_of(snapshot: PageSnapshot, setup: StepSetup | None, words: Words) -> Fo
 
 @dataclass(frozen=True, slots=True)
 class _Lab:
-    """On what the fields of a lab depend.
+    """What the fields of a lab depend on.
 
     Attributes:
         path: the name of a path of one's own; empty if it is a preset.
@@ -165,10 +179,10 @@ def values_in(
 
 
 def refusals_in(snapshot: PageSnapshot) -> dict[str, str]:
-    """Why the last value of a field was refused, by field."""
-    refused = snapshot.refused
-    typed = {f"typed_{side}": refused[side] for side in SIDES if side in refused}
-    return {**refused, **typed}
+    """Why the last value of a field was refused, by field; a law is refused where it is typed."""
+    return {
+        f"typed_{name}" if name in SIDES else name: why for name, why in snapshot.refused.items()
+    }
 
 
 def switch_name(drawing: str) -> str:
@@ -179,7 +193,7 @@ def switch_name(drawing: str) -> str:
 @lru_cache(maxsize=64)
 def _lab_form(lab: _Lab, words: Words) -> FormMessage:
     fields = _fields(lab, {}, words)
-    groups: dict[str, list[FormField]] = {name: [] for name in LEVELS}
+    groups: dict[str, list[FormField]] = {name: [] for name in GROUPS}
     groups["setup"] = [fields[name] for name in FIRST if name in fields]
     for name, field in fields.items():
         if name not in FIRST:
@@ -193,11 +207,11 @@ def _lab_form(lab: _Lab, words: Words) -> FormMessage:
                 name=name,
                 title=words(f"form.group_{name}"),
                 fields=tuple(groups[name]),
-                level="first" if level == "first" else "deeper",
+                level=level,
                 states=states.get(name, ()),
                 rest=words("form.ideal") if name == "reality" else "",
             )
-            for name, level in LEVELS.items()
+            for name, level in GROUPS.items()
             if groups[name]
         ),
     )
@@ -220,29 +234,13 @@ def _step_form(
     return FormMessage(place="step", groups=(group,))
 
 
-LEVELS = {
-    "setup": "first",
-    **dict.fromkeys(("hand", "gains", "along", "points", "reality", "view", "robot"), "deeper"),
-}
-
-
 def _group_of(name: str, robot: str) -> str:
     """The group in which a field of the lab stands that is not seen at once."""
-    if name in _OTHERS:
-        return _OTHERS[name]
+    if name in GROUP_OF_OTHERS:
+        return GROUP_OF_OTHERS[name]
     known = specs(ROBOTS[robot].parameters)
     spec = known[name] if name in known else SETTINGS[name].spec
     return GROUP_OF.get(spec.group, "robot")
-
-
-_OTHERS = {
-    **dict.fromkeys(("pulse", "reset", "start_on_path", "show_start"), "hand"),
-    **dict.fromkeys(("poles", "defaults"), "gains"),
-    **dict.fromkeys(("add", "remove", "point", "point_z1", "point_z2"), "points"),
-    "identify": "reality",
-    **dict.fromkeys((*DRAWINGS, "show_zone", "view"), "view"),
-}
-"""Group of each field that is no declared setting."""
 
 
 def _fields(lab: _Lab, marks: Mapping[str, FieldValue], words: Words) -> dict[str, FormField]:
@@ -277,7 +275,7 @@ def _fields(lab: _Lab, marks: Mapping[str, FieldValue], words: Words) -> dict[st
         _button("compare", words("setup.compare")),
         _button("keep", words("keep.title")),
     ]
-    for name in fields_of("lab", kind, chosen.values()):
+    for name in settings_in_form(kind, chosen.values()):
         spec, default = (
             (known[name], usual[name])
             if name in known
@@ -335,8 +333,8 @@ def _point_fields(robot: Robot, count: int, words: Words) -> Iterator[FormField]
             name=name,
             kind="number",
             label=words("design.coordinate", name=f"y{axis}"),
-            low=-FARTHEST,
-            high=FARTHEST,
+            low=-REACH,
+            high=REACH,
             step=5e-4,
             factor=1e3,
             needs=((FormNeed("point"),),),
