@@ -520,9 +520,6 @@ summary-robot = { $robot }: { $now } Millimeter von der Bahn, höchstens { $most
 code-copy = Kopieren
 code-copied = Kopiert
 
-readout-distance = Abstand zur Bahn
-readout-now = jetzt
-readout-most = höchstens
 readout-paused = t = { $time } s, angehalten
 readout-running = t = { $time } s, läuft mit { $speed }×
 

@@ -435,9 +435,6 @@ summary-robot = { $robot }: { $now } millimetres from the path, { $most } at mos
 code-copy = Copy
 code-copied = Copied
 
-readout-distance = distance to the path
-readout-now = now
-readout-most = most
 readout-paused = t = { $time } s, paused
 readout-running = t = { $time } s, running at { $speed }×
 

@@ -24,7 +24,7 @@ from onpath.app.page.panels.keys import help_text
 from onpath.app.page.teaching.teacher_panel import TeacherPanel
 from onpath.app.storage.records import NotKept
 from onpath.app.view.keys import KEYS
-from onpath.app.view.lab_form import LEVELS, SECTIONS
+from onpath.app.view.lab_form import GROUPS, SECTIONS
 from onpath.assets.messages import catalogue, identifier, languages
 from onpath.lessons.labels import (
     option_label,
@@ -87,7 +87,6 @@ KEYS_MADE = (
     *("lesson.back", "lesson.again", "lesson.close", "site.control.", "symbol.", "show."),
     *("standalone.recorded_", "arena.", "site.why."),
     *("search.kind_", "search.of_", "aid.", "robots.differs_", "export.", "form."),
-    *("readout.distance", "readout.now", "readout.most"),
     *ELSEWHERE,
 )
 """Keys, or their beginnings, that are put together from what the program knows by other names."""
@@ -260,7 +259,7 @@ def test_what_the_program_names_has_words(words: Words) -> None:
         assert key.does(words) in help_text(words) and key.shown(words) in help_text(words)
     for channel in channels(FiveBarParameters()):
         assert words(f"gains.{channel.name}")
-    assert all(words(f"form.group_{group}") for group in LEVELS)
+    assert all(words(f"form.group_{group}") for group in GROUPS)
     assert all(words(f"form.section_{section}") for section in (*SECTIONS, "model"))
 
 
