@@ -13,7 +13,7 @@ class RobotSettings(NamedTuple):
     """The settings that a robot keeps while another one is used; see `app.lab.simulation`.
 
     Attributes:
-        own: the lab's own settings, of which those count that each robot has for itself.
+        own: the lab's own settings; only those that each robot has for itself count.
     """
 
     parameters: Parameters

@@ -30,7 +30,7 @@ class PageText:
         student: code of the lab; see `LessonColumn`.
         kept: what the browser has kept, by name, which is not trusted.
         keep: has the browser keep the value of a name.
-        teaching: of a teacher's page, which has the teacher's language and size, whoever's lab it
+        teaching: of a teacher's page, which has the teacher's language and size, whichever lab it
             shows, and neither lessons nor an introduction; None on other pages.
 
     Attributes:

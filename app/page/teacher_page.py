@@ -21,7 +21,7 @@ class TeacherPage(Page):
     """The teacher's page. A followed lab is read-only.
 
     For a projector, the lab's controls are folded, and those of the class are beside the stage.
-    The page is in the teacher's language, whoever's lab is shown.
+    The page is in the teacher's language, whichever lab is shown.
     """
 
     def __init__(
@@ -54,7 +54,7 @@ class TeacherPage(Page):
 
     @property
     def _presents(self) -> bool:
-        """Whether the teacher presents, whoever's lab is shown."""
+        """Whether the teacher presents, whichever lab is shown."""
         return self._teaching.presents()
 
     @override

@@ -77,7 +77,7 @@ def setting_field(
 
 
 def _instead(need: Need) -> Iterator[FormNeed]:
-    """The conditions of which each fulfils a need."""
+    """The conditions that a need consists of; any one suffices."""
     yield FormNeed(name=need.name, of=need.of)
     for other in need.instead:
         yield from _instead(other)

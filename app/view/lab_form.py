@@ -28,6 +28,7 @@ from onpath.app.lab.commands import (
     Undo,
 )
 from onpath.app.lab.commands.command_codec import message_of
+from onpath.app.lab.lab import Command
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of
 from onpath.app.view.forms import ELSEWHERE, drawing_field, setting_field, settings_in_form
 from onpath.app.view.laws import suitable
@@ -235,7 +236,7 @@ def _step_form(
 
 
 def _group_of(name: str, robot: str) -> str:
-    """The group in which a field of the lab stands that is not seen at once."""
+    """The group of a field that is not seen at once."""
     if name in GROUP_OF_OTHERS:
         return GROUP_OF_OTHERS[name]
     known = specs(ROBOTS[robot].parameters)
@@ -304,20 +305,20 @@ def _fields(lab: _Lab, marks: Mapping[str, FieldValue], words: Words) -> dict[st
     return {field.name: field for field in found}
 
 
-def _button(name: str, label: str, command: object = None, help: str = "") -> FormField:
+def _button(name: str, label: str, command: Command | None = None, help: str = "") -> FormField:
     """A button; without a command, the page knows what its name means."""
-    act = None if command is None else message_of(command)  # type: ignore[arg-type]
+    act = None if command is None else message_of(command)
     return FormField(name=name, kind="button", label=label, act=act, help=help)
 
 
 def _switch(name: str, key: str, words: Words) -> FormField:
-    """Switches something that is drawn and that no lesson names."""
+    """A switch for something that is drawn and that no lesson names."""
     hint = words(f"{key}_hint")
     return FormField(name=name, kind="switch", label=words(key), help=hint, default=False)
 
 
 def _point_fields(robot: Robot, count: int, words: Words) -> Iterator[FormField]:
-    """Adds and removes control points of the path, and moves one."""
+    """What adds, removes and moves control points of the path."""
     yield _button("add", words("design.add"), AddPoint())
     yield _button("remove", words("design.remove"), RemovePoint())
     numbers = [FormOption(value=i + 1, label=str(i + 1)) for i in range(count)]

@@ -1,4 +1,4 @@
-"""What there is to say about the control laws, and about the names that a typed law may use."""
+"""Descriptions of the control laws, and of the names that a typed law may use."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The preset paths: what they are called for a robot, and how they look."""
+"""The preset paths: their names for a robot, and their outlines."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ HALF = 46.0  # of its size; the picture has 50 in each direction
 
 
 def preset_label(preset: str, robot: Robot, words: Words) -> str:
-    """The name of a path, and what a robot has to say about it."""
+    """The name of a path, with a remark if a robot cannot follow it or if it crosses itself."""
     label = path_label(preset, words)
     if preset == "circle" and isinstance(robot.frame, SlantedPlane):
         label = words("design.slanted_circle")

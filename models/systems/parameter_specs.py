@@ -32,7 +32,7 @@ class Need:
     Attributes:
         name: of the other setting, or of a side, whose value is its law.
         of: values with which it suffices; empty: any but 0, "off" and False.
-        instead: other conditions, of which each suffices in its place.
+        instead: other conditions, any of which suffices in its place.
     """
 
     name: str
@@ -63,8 +63,7 @@ class Spec:
         scale: of a slider; a logarithmic one whose range begins at 0 has 0 at its end, and then
             goes on from `step`.
         needs: all that it needs in order to act.
-        compiles: whether some of its values need a loop that another value does not have, which
-            may have to be compiled first.
+        compiles: whether a change of it may need another loop, which may have to be compiled first.
         shown_in: if pages show another unit, that unit and how many of it make one `unit`, such as
             ("mm", 1000).
     """

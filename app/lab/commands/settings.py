@@ -27,6 +27,7 @@ from onpath.models.systems.parameters import Parameters
 
 PATH_MATTERS = ("across", "rise")  # parameters that not every path allows together
 UNPLACED = LabSettings(wall=True).obstacle
+"""A wall that has no place yet, and gets one on the path."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,7 +114,7 @@ def set_parameters(lab: Lab, wanted: Parameters) -> None:
 
 
 class SetByTeacher(Set):
-    """The same as a teacher's order."""
+    """The same as a teacher's order, for settings with `by="teacher"`; there are none yet."""
 
     __slots__ = ()
     from_teacher: ClassVar[bool] = True
@@ -121,7 +122,7 @@ class SetByTeacher(Set):
 
 
 class SetByProcess(Set):
-    """The same as an order of those who run the process."""
+    """The same as an order of those who run the process, such as `onpath --set`."""
 
     __slots__ = ()
     from_teacher: ClassVar[bool] = True
