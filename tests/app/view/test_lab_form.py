@@ -14,18 +14,20 @@ from onpath.app.channel.messages import (
     SetField,
     ValuesMessage,
 )
+from onpath.app.lab.commands import TypeLaw
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.page.overlays import Switches
 from onpath.app.server.page_form import PageForm
 from onpath.app.view.forms import ELSEWHERE
-from onpath.app.view.lab_form import form_of, values_in
+from onpath.app.view.lab_form import form_of, refusals_in, values_in
 from onpath.lessons.action_schema import StepSetup
 from onpath.lessons.course import NO_LESSONS
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.closed_loop.lab_settings import SETTINGS
 from onpath.models.control.laws.registry import OWN_GAINS
 from onpath.models.control.settable import specs
+from onpath.models.control.sides import SIDES
 from onpath.models.systems.catalogue import ROBOTS
 from tests.support.lab import loop_cache
 
@@ -122,3 +124,12 @@ def test_a_point_of_the_path_is_chosen_and_moved() -> None:
     assert told("point", "a text")["point"] == 3
     assert told("point", 99)["point"] == 3
     assert told("point", 0)["point"] == 0
+
+
+@pytest.mark.parametrize("side", SIDES)
+def test_why_a_typed_law_is_refused_is_told_once_where_it_is_typed(side: str) -> None:
+    lab = Lab(loop_cache())
+    lab.post(TypeLaw(side, "across = nothing"))
+    lab.drain()
+    assert refusals_in(take_page_snapshot(lab, 1.0)) == {f"typed_{side}": lab.message}
+    assert lab.message
