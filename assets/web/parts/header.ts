@@ -5,9 +5,9 @@ import { said, type Texts } from "../core/words"
 import { icon, type Icon } from "./icons"
 import { pressed } from "./sheet"
 
-export type Place = "controls" | "search" | "lessons" | "help" | "display"
-const ICONS: Record<Place, Icon> = { controls: "controls", search: "search", lessons: "lessons", help: "help", display: "gear" }
-const KEYS: Record<Place, string> = {
+type Destination = "controls" | "search" | "lessons" | "help" | "display"
+const ICONS: Record<Destination, Icon> = { controls: "controls", search: "search", lessons: "lessons", help: "help", display: "gear" }
+const KEYS: Record<Destination, string> = {
     controls: "lesson.controls", search: "search.title", lessons: "lesson.lessons", help: "controls.help", display: "display.title",
 }
 
@@ -15,12 +15,10 @@ export class Header {
     readonly element = made("header", "")
     /** Opens the controls, where they are not in sight. */
     readonly controls: HTMLButtonElement
-    /** Whose place this is in which class. */
-    readonly member = made("span", "member")
 
-    constructor(texts: Texts, go: (place: Place) => void) {
+    constructor(texts: Texts, go: (place: Destination) => void) {
         this.element.id = "op-head"
-        const button = (place: Place) => {
+        const button = (place: Destination) => {
             const name = said(texts, KEYS[place])
             const named = pressed(place, icon(ICONS[place]), () => go(place))
             named.append(made("span", "", name))
@@ -30,6 +28,6 @@ export class Header {
         this.controls.ariaExpanded = "false"
         const places = made("nav", "", this.controls, button("lessons"), button("search"), button("help"), button("display"))
         places.ariaLabel = "OnPath"
-        this.element.append(made("span", "brand", "OnPath"), this.member, places)
+        this.element.append(made("span", "brand", "OnPath"), places)
     }
 }
