@@ -39,6 +39,7 @@ export type Changes<Message extends { is: string }> = Pick<Message, "is"> & Part
 IMPORTED = {
     "../core/engine": ("RowData",),
     "../core/lesson_data": ("ChartData", "Curves", "StepData"),
+    "../lessons/checks": ("Verdict",),
     "../lessons/notes": ("Notes",),
 }
 """Types that are written by hand, by file."""
@@ -68,7 +69,7 @@ def _messages_file(elsewhere: dict[str, tuple[str, ...]]) -> str:
         elsewhere: further types that are imported, by file.
     """
     imported = {**elsewhere, **IMPORTED}
-    page, lab = _Writer(reads=True), _Writer(reads=False, elsewhere=elsewhere)
+    page, lab = _Writer(reads=True), _Writer(reads=False, elsewhere=imported)
     commands = [page.command(each) for each in inspect.multi_type_info(command_structs())]
     from_page = [page.type(each) for each in _kinds(messages.PageMessage)]
     to_page = [lab.type(each) for each in _kinds(messages.LabMessage)]

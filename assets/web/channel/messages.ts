@@ -4,6 +4,7 @@
 import type { FormMessage, ValuesMessage } from "../core/form_data"
 import type { RowData } from "../core/engine"
 import type { ChartData, Curves, StepData } from "../core/lesson_data"
+import type { Verdict } from "../lessons/checks"
 import type { Notes } from "../lessons/notes"
 
 export const PROTOCOL = "onpath-2"
@@ -506,18 +507,6 @@ export interface LessonMessage {
     notes?: Notes
     /** at the end: the curves of each prediction, in the order of the elements `[data-chart]`. */
     charts: ChartData[]
-}
-
-/** Whether a check is satisfied, and a sentence with the measured and the required value. */
-export interface Verdict {
-    passed: boolean
-    words: string
-    /** of the time that it must last, from 0 to 1; None if it has no duration. */
-    share: number | null
-    /** whether anything has been done in this run that it could judge. */
-    begun: boolean
-    /** when it was missed for good in this run, [s]; None if it was not. */
-    broken: number | null
 }
 
 /** What is measured in the open step of a lesson, at most ten times a second. */
