@@ -1,11 +1,12 @@
 // The engine of a page of the lab: its server simulates, and tells it through a websocket of the page's own.
 
 import type { FormMessage } from "../core/form_data"
-import { RemoteSettings } from "./settings"
+import { keepDraftsOf } from "../core/drafts"
 import { sampleAt, type Act, type Change, type Engine, type PathShape, type RowData, type Sample, type SideSample, type SideText, type State, type Vector } from "../core/engine"
 import { AT_JOINTS } from "../core/symbols"
 import { Files } from "./files"
 import { keep, keepLab, kept, siteOf } from "./kept"
+import { RemoteSettings } from "./settings"
 import {
     PROTOCOL, type Ask, type Command, type Compared, type CompareSheet, type DisplaySheet, type FrameMessage, type Hello, type HelpSheet, type Index, type KeepSheet,
     type LabMessage, type LawSheet, type LessonMessage, type LessonSheet, type Light, type MeasuredMessage, type PageMessage, type PathMessage,
@@ -367,7 +368,10 @@ export class RemoteEngine implements Engine {
         else if (message.is === "words") {
             this.words = message
             this.tell("words")
-        } else if (message.is === "lab") keepLab(message.code)
+        } else if (message.is === "lab") {
+            keepLab(message.code)
+            keepDraftsOf(message.code)
+        }
         else if (message.is === "store") keep(message.key, message.value)
         else if (message.is === "refused") console.warn(`refused: ${message.why}`)
         else if (message.is !== "alive" && message.is !== "wait") this.answered(message)

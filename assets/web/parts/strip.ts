@@ -3,6 +3,7 @@
 import { made } from "../core/dom"
 import { shown, type Engine, type Vector } from "../core/engine"
 import type { StepData } from "../core/lesson_data"
+import { recalled, remember } from "../core/memory"
 import { said, written, type Texts } from "../core/words"
 import type { Chart, Limit } from "./chart"
 import { firstAfter, type Span } from "./curves"
@@ -16,7 +17,7 @@ const [MINUTE, SPARE] = [60, 5] // [s], that are kept, and what is dropped at on
 const ROUND = 5e-4 // by how much the radius of a circle may vary
 const SPOKEN = 500 // [ms] between two values for a screen reader
 const STEPS: Record<string, number> = { ArrowLeft: -0.1, ArrowDown: -0.1, ArrowRight: 0.1, ArrowUp: 0.1, PageDown: -1, PageUp: 1 }
-export const DISTANCE = "distance" // the first row, which is always there
+const DISTANCE = "distance" // the first row, which is always there
 const PHASE = "phase" // the plane, which stands beside the rows
 const PLANE = ["across", "across_rate"] // rows that are its axes
 
@@ -42,7 +43,8 @@ export class Strip {
 
     /** `kept`: the name under which the browser keeps the rows that a user has chosen. */
     constructor(private readonly texts: Texts, private readonly engine: Engine, ended?: AbortSignal, private readonly kept = "") {
-        this.chosen = recalled(kept)
+        const chosen = kept ? recalled(kept) : null
+        this.chosen = Array.isArray(chosen) ? chosen.filter(each => typeof each === "string") : []
         this.menu = new PlotMenu(texts, (name, on) => this.choose(name, on))
         const columns = () => this.rows.flatMap(({ chart, data }) => chart.lines.map(line => ({ ...line, name: this.heading(line.name, data.label), unit: data.unit })))
         const table = tableOf(texts, () => said(texts, "chart.title"), columns, () => spansOf(this.times, this.kinds))
@@ -98,7 +100,10 @@ export class Strip {
         const names = this.wanted.filter(each => each !== name)
         if (on) names.push(name)
         if (this.inStep) this.inStep = names
-        else remember(this.kept, (this.chosen = names))
+        else {
+            this.chosen = names
+            if (this.kept) remember(this.kept, names)
+        }
         this.build()
     }
 
@@ -256,22 +261,4 @@ export function radiusOf(points: readonly Vector[]): number | null {
     const radii = points.map(point => Math.hypot(...point.map((each, k) => each - middle[k]!)))
     const [least, most] = [Math.min(...radii), Math.max(...radii)]
     return most - least < ROUND * most && most > 0 ? (least + most) / 2 : null
-}
-
-/** Names that the browser keeps; without storage, as in a sandboxed frame, there are none. */
-function recalled(kept: string): string[] {
-    try {
-        const found: unknown = JSON.parse((kept && localStorage.getItem(kept)) || "[]")
-        return Array.isArray(found) ? found.filter(each => typeof each === "string") : []
-    } catch {
-        return []
-    }
-}
-
-function remember(kept: string, names: readonly string[]): void {
-    try {
-        if (kept) localStorage.setItem(kept, JSON.stringify(names))
-    } catch {
-        // they last as long as the page
-    }
 }
