@@ -28,10 +28,6 @@ type Final = "forbidden" | "refused" | "version"
 interface Heard { type: string; versionMismatch?: boolean }
 const CALM: readonly string[] = ["opening", "building", "waits", "back", "loading", "picture_back", "no_webgl"]
 
-/** Of browser_words.js and quality.js, which come before this script. */
-declare const ownWords: { text(): Record<string, string>; language(): string }
-declare const webgl: { works: boolean; plain?: boolean }
-
 export class Connection {
     private readonly box = made("p", "op-notice")
     private wasThere = false

@@ -1,7 +1,7 @@
 // The files that a page of the lab sends to its server, and those that it gets.
 
 import { save } from "../core/dom"
-import type { DownloadMessage, DownloadPart, FileMessage, MakeFile, PageMessage, SendFile } from "./messages"
+import type { DownloadMessage, DownloadPart, FileMessage, PageMessage, SendFile } from "./messages"
 
 const PART = 96_000 // [B], of a file for the server; the next one follows its answer
 
@@ -39,11 +39,7 @@ export class Files {
         })
     }
 
-    /** Ask for a file, of whose making and coming the listeners are told; it is saved as soon as it is there. */
-    make(file: MakeFile["file"], with_code = false): void {
-        this.tell({ is: "make", file, with_code })
-    }
-
+    /** Be told of the making and coming of a file for the page, which is saved as soon as it is there. */
     on(listener: (download: Download) => void, ended?: AbortSignal): void {
         this.listeners.add(listener)
         ended?.addEventListener("abort", () => this.listeners.delete(listener))

@@ -11,6 +11,23 @@ export function made<T extends keyof HTMLElementTagNameMap>(
     return element
 }
 
+/** An element of a picture in SVG. */
+export function svg<T extends keyof SVGElementTagNameMap>(
+    tag: T, attributes: Record<string, string | number>, ...inside: (Node | string)[]
+): SVGElementTagNameMap[T] {
+    const element = document.createElementNS("http://www.w3.org/2000/svg", tag)
+    for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, String(value))
+    element.append(...inside)
+    return element
+}
+
+/** A checkbox that looks like a switch, and is called one. */
+export function switchInput(properties: { id?: string; title?: string; checked?: boolean } = {}): HTMLInputElement {
+    const input = Object.assign(made("input", "switch"), { type: "checkbox", ...properties })
+    input.setAttribute("role", "switch")
+    return input
+}
+
 /** Set an element's text if it differs, so that a screen reader does not repeat it. */
 export function tell(element: HTMLElement, text: string): void {
     if (element.textContent !== text) element.textContent = text

@@ -6,7 +6,7 @@ export type Robot = "tracker" | "follower"
 export const ROBOTS: Robot[] = ["tracker", "follower"]
 export type { Setting }
 
-/** One action of a script or a link; it has one of these fields besides `side`. */
+/** One action of a script or a link of a page without a server; it has one of these fields besides `side`. */
 export interface Action {
     hold?: boolean
     pull?: [number, number]
@@ -153,7 +153,8 @@ export interface SketchData {
 export interface ChartData { data: SketchData; script: Script | null; answer: Answer; truth: Curves | null }
 
 export type BlockData =
-    | { kind: "text"; links: (Action[] | null)[]; when?: [string, number[]] }
+    // Links have actions: those above on a page without a server, those of channel/messages.ts in the lab.
+    | { kind: "text"; links: (unknown[] | null)[]; when?: [string, number[]] }
     | { kind: "choice" | "quiz"; right?: number } // a lab keeps it to itself until there is an answer
     | { kind: "number"; number?: number; tolerance?: number }
     | { kind: "open" }

@@ -1,7 +1,6 @@
 // A student's notes on the lessons: what was predicted, seen, answered and passed.
 
-import type { Answer, Curves } from "../core/lesson_data"
-import type { PageData } from "../core/lesson_data"
+import type { Answer, Curves, PageData } from "../core/lesson_data"
 import type { Progress } from "./progress"
 
 /** Keys are numbers of steps, from 0; for questions, step and block, such as "3.1". */

@@ -1,6 +1,5 @@
 // Keeps a student's progress in the browser; for a learning platform see scorm.ts.
 
-
 /** Shows a message about what is kept, in the page's texts. */
 export type Tell = (key: string, values?: Record<string, string>) => void
 

@@ -5,15 +5,16 @@ import { made, tell } from "../core/dom"
 import { shown } from "../core/engine"
 import type { FormMessage } from "../core/form_data"
 import { retone } from "../core/ink"
-import { keptLook } from "../core/look"
 import { said, significant, written, type Texts } from "../core/words"
 import { RemoteEngine } from "../channel/channel"
 import type { Command } from "../channel/messages"
 import { Connection } from "../channel/connection"
 import { Column } from "../parts/column"
 import { Downloads } from "../parts/downloads"
-import { Form, type FormHost } from "../parts/form"
+import type { FormHost } from "../parts/fields"
+import { Form } from "../parts/form"
 import { Lens } from "../parts/lens"
+import { keptLook } from "../parts/look"
 import { OverStage } from "../parts/over_stage"
 import { Strip } from "../parts/strip"
 import { Sketch } from "../parts/sketch"
@@ -123,7 +124,7 @@ class Face {
         const host: FormHost = {
             texts, value: settings.value, refused: settings.refused, waits: settings.waits,
             set: (name, value) => settings.set(name, value),
-            act: ({ name, act }) => (act ? engine.send(act as unknown as Command) : shell.go(name)),
+            act: ({ name, act }) => (act ? engine.send(act as Command) : shell.go(name)),
         }
         for (const [place, data] of engine.forms) {
             const form = forms.get(place)
@@ -251,14 +252,11 @@ function sliderOf(gain: string): Element | null {
     return label?.closest(".mantine-Flex-root") ?? null
 }
 
-/** Of quality.js, which comes before this script. */
-declare const webgl: { works: boolean; plain?: boolean }
-
 /** Show our part of the page as soon as the lab has told of itself, whether or not viser's has come. */
 export function showLab(): void {
     const root = document.documentElement
     const scheme = new Scheme()
-    const engine = new RemoteEngine(() => scheme.dark, webgl.plain ?? false), connection = new Connection(engine)
+    const engine = new RemoteEngine(() => scheme.dark, webgl.plain), connection = new Connection(engine)
     let face: Face | null = null
     let words: Texts | null = null, reopen = "", calmed = !matchMedia("(prefers-reduced-motion: reduce)").matches
     root.classList.add("op-loading")

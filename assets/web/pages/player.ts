@@ -1,7 +1,7 @@
 // The player of a lesson: one step at a time, in a column beside the robots.
 
 import { made } from "../core/dom"
-import type { PageData, Setting, StepData } from "../core/lesson_data"
+import type { Action, PageData, Setting, StepData } from "../core/lesson_data"
 import { refused } from "../core/refusal"
 import { said } from "../core/words"
 import { given } from "../lessons/notes"
@@ -198,7 +198,7 @@ export class Player implements Robots {
 
     act(block: number, link: number): void {
         const data = this.page.steps[this.index]!.blocks[block]!
-        if (data.kind === "text") this.stage?.act(data.links[link]!)
+        if (data.kind === "text") this.stage?.act(data.links[link] as Action[])
     }
 
     play(): void {

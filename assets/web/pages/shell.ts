@@ -2,9 +2,8 @@
 
 import type { RemoteEngine } from "../channel/channel"
 import type { Command, Compared, Index, PageMessage, Told } from "../channel/messages"
-import { keptLook, keepLook } from "../core/look"
 import { said, type Texts } from "../core/words"
-import { Compare } from "../parts/compare_sheet"
+import { LawComparison } from "../parts/compare_sheet"
 import { display } from "../parts/display_sheet"
 import { pathFromFile } from "../parts/file_sheet"
 import type { Form } from "../parts/form"
@@ -14,6 +13,7 @@ import { Keep } from "../parts/keep_sheet"
 import { Keys } from "../parts/keys"
 import { aboutLaws } from "../parts/law_sheet"
 import { chooseLesson } from "../parts/lesson_sheet"
+import { keepLook, keptLook } from "../parts/look"
 import { Panel } from "../parts/panel"
 import { pointAtStage } from "../parts/pointing"
 import { chooseRobot } from "../parts/robot_sheet"
@@ -40,7 +40,7 @@ export class Shell {
     private known = "" // language and robot of the index
     private opened: { name: Opens; dialog: SheetDialog } | null = null
     private keep: Keep | null = null
-    private compare: Compare | null = null
+    private compare: LawComparison | null = null
 
     /** `reopen`: what was open before the page got its present words. */
     constructor(private readonly engine: RemoteEngine, private readonly texts: Texts, signal: AbortSignal, reopen: string) {
@@ -66,7 +66,6 @@ export class Shell {
         return name
     }
 
-
     /** Open one of the sheets with what the lab says now. */
     async open(name: Opens): Promise<void> {
         const { engine, texts } = this, lab = engine.lab!
@@ -83,7 +82,7 @@ export class Shell {
             file: () => Promise.resolve(pathFromFile(texts, engine.files)),
             compare: async () => {
                 const data = await engine.ask("compare")
-                return (this.compare ??= new Compare(texts, { send, get laws() { return engine.lab!.laws } })).open(data)
+                return (this.compare ??= new LawComparison(texts, { send, get laws() { return engine.lab!.laws } })).open(data)
             },
         }
         this.opened?.dialog.close()

@@ -6,7 +6,7 @@ import { covers, disc, letters, Sheet, stroke, tones, type Box, type Pixel, type
 import { niceStep } from "../core/numbers"
 import { said, significant, written, type Texts } from "../core/words"
 import { firstAfter, valueAt, type Curve, type Span } from "./curves"
-import { tableOf, type Column } from "./table"
+import { tableOf, type TableColumn } from "./table"
 
 export interface Line extends Curve {
     name: string
@@ -78,9 +78,9 @@ export class Chart {
     }
 
     /** What stands in the table. */
-    get columns(): Column[] {
+    get columns(): TableColumn[] {
         const { lines, ghost, texts, axes: { unit } } = this
-        const found: Column[] = lines.map(({ name, times, values }) => ({ name, times, values, unit }))
+        const found: TableColumn[] = lines.map(({ name, times, values }) => ({ name, times, values, unit }))
         return ghost ? [...found, { ...ghost, name: said(texts, "chart.yours"), unit }] : found
     }
 

@@ -91,7 +91,7 @@ export class Column implements Robots {
 
     act(block: number, link: number): void {
         const data = this.page.steps[this.view!.index]!.blocks[block]!
-        if (data.kind === "text") this.engine.send({ do: "Act", actions: data.links[link] as unknown as Action[] })
+        if (data.kind === "text") this.engine.send({ do: "Act", actions: data.links[link] as Action[] })
     }
 
     /** Show the open step, or what has changed in it. */

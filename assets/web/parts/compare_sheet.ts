@@ -2,22 +2,23 @@
 // each row to a robot on the stage.
 
 import type { Command, Compared, ComparedLaw, CompareSheet, PageMessage } from "../channel/messages"
-import { made, tell } from "../core/dom"
+import { made, svg, tell } from "../core/dom"
+import { niceStep } from "../core/numbers"
 import { said, written, type Texts } from "../core/words"
 import { pressed, SheetDialog } from "./sheet"
 
-const SVG = "http://www.w3.org/2000/svg"
 const [WIDTH, HEIGHT, LEFT, BELOW] = [560, 260, 44, 30] // [px] of the picture, and of its margins
 const MEASURES = ["distance", "delay", "force"] as const
 type Measure = (typeof MEASURES)[number]
 
-export interface Comparing {
+interface Comparing {
     /** The laws of the two robots now. */
     readonly laws: readonly string[]
     send(message: Command | PageMessage): void
 }
 
-export class Compare {
+/** The sheet, which keeps its last results while it is closed. */
+export class LawComparison {
     private readonly sheet: SheetDialog
     private readonly laws = made("fieldset", "laws")
     private readonly what = made("select", "")
@@ -150,16 +151,16 @@ export class Compare {
         const picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": said(texts, "compare.picture") })
         const until = Math.max(...rows.map(row => row.step * (row.curve.length - 1)), 1)
         const finite = rows.flatMap(row => row.curve).filter(Number.isFinite)
-        const top = nice(Math.max(...finite.map(each => Math.min(each, 500)), 1))
+        const top = niceStep(Math.max(...finite.map(each => Math.min(each, 500)), 1))
         const x = (time: number) => LEFT + (time / until) * (WIDTH - LEFT - 8), y = (value: number) => HEIGHT - BELOW - (Math.min(value, top) / top) * (HEIGHT - BELOW - 10)
         const [from, to] = this.acts
         picture.append(svg("rect", { class: "acts", x: x(from), y: 10, width: Math.max(x(Math.min(to, until)) - x(from), 0), height: HEIGHT - BELOW - 10 }))
         for (const part of [0, 0.5, 1]) {
             picture.append(svg("line", { class: "grid", x1: LEFT, x2: WIDTH - 8, y1: y(part * top), y2: y(part * top) }))
-            picture.append(svgText(LEFT - 6, y(part * top) + 4, written(texts, part * top), "end"))
+            picture.append(letters(LEFT - 6, y(part * top) + 4, written(texts, part * top), "end"))
         }
-        for (let time = 0; time <= until; time++) picture.append(svgText(x(time), HEIGHT - BELOW + 16, written(texts, time), "middle"))
-        picture.append(svgText(WIDTH - 8, HEIGHT - 2, said(texts, "compare.time"), "end"), svgText(LEFT - 40, 8, "mm", "start"))
+        for (let time = 0; time <= until; time++) picture.append(letters(x(time), HEIGHT - BELOW + 16, written(texts, time), "middle"))
+        picture.append(letters(WIDTH - 8, HEIGHT - 2, said(texts, "compare.time"), "end"), letters(LEFT - 40, 8, "mm", "start"))
         for (const row of [...rows].reverse()) {
             const points = row.curve.map((value, i) => `${x(i * row.step).toFixed(1)},${y(value).toFixed(1)}`).join(" ")
             const line = svg("polyline", { points })
@@ -171,20 +172,6 @@ export class Compare {
     }
 }
 
-function svg(name: string, attributes: Record<string, string | number>): SVGElement {
-    const element = document.createElementNS(SVG, name)
-    for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, String(value))
-    return element
-}
-
-function svgText(x: number, y: number, text: string, anchor: string): SVGElement {
-    const element = svg("text", { x, y, "text-anchor": anchor })
-    element.textContent = text
-    return element
-}
-
-/** The least of 1, 2 and 5 times a power of ten that is not below a value. */
-function nice(most: number): number {
-    const power = 10 ** Math.floor(Math.log10(most))
-    return ([1, 2, 5, 10].find(step => step * power >= most) ?? 10) * power
+function letters(x: number, y: number, text: string, anchor: string): SVGElement {
+    return svg("text", { x, y, "text-anchor": anchor }, text)
 }

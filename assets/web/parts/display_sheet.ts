@@ -1,14 +1,13 @@
 // Language, look, and what is heard: settings of this browser.
 
 import type { Command, DisplaySheet, PageMessage } from "../channel/messages"
-import { made } from "../core/dom"
-import { LOOKS, type Look } from "../core/look"
+import { made, switchInput } from "../core/dom"
 import { said, type Texts } from "../core/words"
+import { LOOKS, type Look } from "./look"
 import { SheetDialog } from "./sheet"
 
-
 /** What the sheet shows and changes. */
-export interface Display {
+interface Display {
     language: string
     large: boolean
     look: Look
@@ -21,8 +20,7 @@ export function display(texts: Texts, { languages, speaks, sounds }: DisplayShee
     const language = chosen("language", languages.map(({ code, name }) => [code, name] as const), host.language, code => host.send({ do: "SetLanguage", language: code }))
     const look = chosen("look", LOOKS.map(each => [each, said(texts, `look.${each}`)] as const), host.look, each => host.setLook(each as Look))
     const toggle = (key: string, on: boolean, set: (on: boolean) => void) => {
-        const box = Object.assign(made("input", "switch"), { type: "checkbox", checked: on })
-        box.setAttribute("role", "switch")
+        const box = switchInput({ checked: on })
         box.addEventListener("change", () => set(box.checked))
         return made("label", "row", made("span", "", said(texts, key)), box)
     }

@@ -1,6 +1,6 @@
 // The rows of a form: a setting each, or a button, or a note. While a hand is on a row, it shows what the hand wants.
 
-import { made, tell } from "../core/dom"
+import { made, svg, switchInput, tell } from "../core/dom"
 import { draftOf, keepDraft } from "../core/drafts"
 import type { FormField, FormOption } from "../core/form_data"
 import { Scale, typedNumber } from "../core/scales"
@@ -25,8 +25,6 @@ export interface FormHost {
     refused(name: string): string
     /** Whether the last value that was set is still on its way, so that `value` is older. */
     waits?(name: string): boolean
-    /** The hand or the focus is at a setting; empty: at none. */
-    points?(name: string): void
 }
 
 /** What a row needs of its form. */
@@ -44,7 +42,8 @@ export function same(one: Value | undefined | null, other: Value | undefined | n
     return Math.abs(one - other) <= 1e-9 * Math.max(1, Math.abs(one))
 }
 
-export abstract class Row {
+/** A row of a form. */
+export abstract class FieldRow {
     readonly element: HTMLElement
     protected readonly id = `op-field-${rows++}`
     /** What the hand wants, while that counts or differs. */
@@ -175,9 +174,6 @@ export abstract class Row {
     /** Put the parts of the row together, with its way back and its refusal. */
     protected fill(...parts: Node[]): void {
         this.element.append(...parts, this.back, this.refusal)
-        const { name } = this.field
-        for (const event of ["pointerenter", "focusin"]) this.element.addEventListener(event, () => this.form.host.points?.(name), { signal: this.signal })
-        for (const event of ["pointerleave", "focusout"]) this.element.addEventListener(event, () => this.form.host.points?.(""), { signal: this.signal })
     }
 
     /** Backspace and Delete go back. */
@@ -192,7 +188,7 @@ export abstract class Row {
 }
 
 /** A slider and a box for its number; a switch before them if 0 is off. */
-class NumberRow extends Row {
+class NumberRow extends FieldRow {
     private scale = scaleOf(this.field)
     private readonly slider = made("input", "")
     private readonly box = made("input", "typed")
@@ -216,7 +212,7 @@ class NumberRow extends Row {
         this.inputs = [slider, box]
         const parts: Node[] = [this.heading, track, box]
         if (field.on != null) {
-            this.toggle = switchInput(`${this.id}-on`)
+            this.toggle = switchInput({ id: `${this.id}-on` })
             this.heading.htmlFor = this.toggle.id
             this.toggle.addEventListener("change", () => this.choose(this.toggle!.checked ? this.field.on! : 0), { signal })
             this.goesBack(this.toggle)
@@ -346,17 +342,38 @@ class NumberRow extends Row {
 }
 
 /** One of several values. */
-class ChoiceRow extends Row {
+abstract class OptionRow extends FieldRow {
+    private offered = ""
+
+    words(value: Value): string {
+        return this.options.find(each => same(each.value, value))?.label ?? String(value)
+    }
+
+    protected get options(): FormOption[] { return this.field.options ?? [] }
+    /** Name what is chosen from, and offer the options if they are other ones: a menu stays open. */
+    protected offer(heading: HTMLElement, from: HTMLElement): void {
+        const { field, options } = this, offered = JSON.stringify(options)
+        this.title(heading)
+        from.ariaLabel = field.label
+        describe(from, field.help)
+        if (offered === this.offered) return
+        this.offered = offered
+        this.put(options)
+    }
+
+    protected abstract put(options: readonly FormOption[]): void
+}
+
+class ChoiceRow extends OptionRow {
     private readonly select = made("select", "")
     private readonly heading = made("label", "name")
     protected readonly inputs = [this.select]
-    private offered = ""
 
     constructor(field: FormField, form: RowForm, signal: AbortSignal) {
         super(field, form, signal)
         this.select.id = this.heading.htmlFor = this.id
         this.select.addEventListener("change", () => {
-            const option = this.field.options![this.select.selectedIndex]
+            const option = this.options[this.select.selectedIndex]
             if (option) this.choose(option.value)
         }, { signal })
         this.goesBack(this.select)
@@ -364,34 +381,25 @@ class ChoiceRow extends Row {
         this.name()
     }
 
-    words(value: Value): string {
-        return this.field.options?.find(each => same(each.value, value))?.label ?? String(value)
-    }
+    protected name(): void { this.offer(this.heading, this.select) }
 
-    protected name(): void {
-        const { select, field } = this
-        this.title(this.heading)
-        select.ariaLabel = field.label
-        describe(select, field.help)
-        const options = field.options ?? [], offered = JSON.stringify(options)
-        if (offered === this.offered) return // a menu stays open
-        this.offered = offered
+    protected put(options: readonly FormOption[]): void {
+        const { select } = this
         select.replaceChildren(...options.map(({ label, help = "" }) => Object.assign(made("option", "", label), { title: help })))
         select.selectedIndex = -1
     }
 
     protected show(value: Value): void {
-        const index = this.field.options!.findIndex(each => same(each.value, value))
+        const index = this.options.findIndex(each => same(each.value, value))
         if (this.select.selectedIndex !== index) this.select.selectedIndex = index
     }
 }
 
 /** One of few values, each with its picture. */
-class PictureRow extends Row {
+class PictureRow extends OptionRow {
     private readonly heading = made("span", "name")
     private readonly tiles = made("span", "tiles")
     protected inputs: HTMLInputElement[] = []
-    private offered = ""
 
     constructor(field: FormField, form: RowForm, signal: AbortSignal) {
         super(field, form, signal)
@@ -401,36 +409,26 @@ class PictureRow extends Row {
         this.name()
     }
 
-    words(value: Value): string {
-        return this.field.options?.find(each => same(each.value, value))?.label ?? String(value)
-    }
+    protected name(): void { this.offer(this.heading, this.tiles) }
 
-    protected name(): void {
-        const { field, tiles } = this
-        this.title(this.heading)
-        tiles.ariaLabel = field.label
-        describe(tiles, field.help)
-        const options = field.options ?? [], offered = JSON.stringify(options)
-        if (offered === this.offered) return
-        this.offered = offered
+    protected put(options: readonly FormOption[]): void {
         this.inputs = options.map(option => {
             const input = Object.assign(made("input", ""), { type: "radio", name: this.id, ariaLabel: option.label })
             input.addEventListener("change", () => this.choose(option.value), { signal: this.signal })
             return input
         })
-        const shown = ({ label, picture, help }: (typeof options)[number], i: number) =>
-            Object.assign(made("label", "tile", this.inputs[i]!, picture ? outline(picture) : label), { title: help || label })
-        tiles.replaceChildren(...options.map(shown))
+        this.tiles.replaceChildren(...options.map(({ label, picture, help }, i) =>
+            Object.assign(made("label", "tile", this.inputs[i]!, picture ? outline(picture) : label), { title: help || label })))
     }
 
     protected show(value: Value): void {
-        this.inputs.forEach((input, i) => (input.checked = same(this.field.options![i]!.value, value)))
+        this.inputs.forEach((input, i) => (input.checked = same(this.options[i]!.value, value)))
     }
 }
 
 /** Something that is on or off. */
-class SwitchRow extends Row {
-    private readonly toggle = switchInput(this.id)
+class SwitchRow extends FieldRow {
+    private readonly toggle = switchInput({ id: this.id })
     private readonly heading = made("label", "name")
     protected readonly inputs = [this.toggle]
 
@@ -459,7 +457,7 @@ class SwitchRow extends Row {
 }
 
 /** Something to do. */
-class ButtonRow extends Row {
+class ButtonRow extends FieldRow {
     private readonly button = made("button", "do")
     protected readonly inputs = [this.button]
 
@@ -487,7 +485,7 @@ class ButtonRow extends Row {
 }
 
 /** A text of one or several lines. */
-class TextRow extends Row {
+class TextRow extends FieldRow {
     private readonly area = made("textarea", "")
     private readonly use = made("button", "use")
     private readonly heading = made("label", "name")
@@ -556,7 +554,7 @@ class TextRow extends Row {
 }
 
 /** Lines of text, which are its value. */
-class NoteRow extends Row {
+class NoteRow extends FieldRow {
     private readonly note = made("p", "")
     protected readonly inputs: HTMLElement[] = []
 
@@ -600,14 +598,8 @@ function looks({ kind, on, options }: FormField): keyof typeof KINDS {
     return kind === "choice" && options?.some(each => each.picture) ? "pictures" : kind
 }
 
-export function rowOf(field: FormField, form: RowForm, signal: AbortSignal): Row {
+export function rowOf(field: FormField, form: RowForm, signal: AbortSignal): FieldRow {
     return new KINDS[looks(field)](field, form, signal)
-}
-
-function switchInput(id: string): HTMLInputElement {
-    const input = Object.assign(made("input", "switch"), { type: "checkbox", id })
-    input.setAttribute("role", "switch")
-    return input
 }
 
 /** A symbol as one types it: K1 for K₁. */
@@ -620,14 +612,6 @@ function describe(element: HTMLElement, text = ""): void {
     else element.removeAttribute("aria-description")
 }
 
-const SVG = "http://www.w3.org/2000/svg"
-
 function outline(picture: string): SVGElement {
-    const svg = document.createElementNS(SVG, "svg"), path = document.createElementNS(SVG, "path")
-    svg.setAttribute("viewBox", "-60 -60 120 120")
-    svg.setAttribute("aria-hidden", "true")
-    path.setAttribute("d", picture)
-    svg.append(path)
-    return svg
+    return svg("svg", { viewBox: "-60 -60 120 120", "aria-hidden": "true" }, svg("path", { d: picture }))
 }
-

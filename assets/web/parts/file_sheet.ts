@@ -1,7 +1,7 @@
 // A path from a file: what is made of its line, how far it has come, and why it cannot be followed.
 
 import type { Files } from "../channel/files"
-import { made, tell } from "../core/dom"
+import { made, switchInput, tell } from "../core/dom"
 import { said, type Texts } from "../core/words"
 import { pressed, SheetDialog } from "./sheet"
 
@@ -17,8 +17,7 @@ export function pathFromFile(texts: Texts, files: Files): SheetDialog {
         return { box, label: made("label", "row", made("span", "", said(texts, `design.${key}`)), box) }
     }
     const size = number("size", 100, 400, 5), radius = number("radius", 0, 100, 1)
-    const opened = Object.assign(made("input", "switch"), { type: "checkbox", title: said(texts, "design.open_hint") })
-    opened.setAttribute("role", "switch")
+    const opened = switchInput({ title: said(texts, "design.open_hint") })
     const chooser = Object.assign(made("input", ""), { type: "file", accept: KINDS, hidden: true })
     const choose = pressed("main", said(texts, "design.upload"), () => chooser.click())
     const state = made("p", "state"), refusal = made("p", "refusal")

@@ -3,10 +3,9 @@
 
 import { made, tell } from "../core/dom"
 import type { FormField, FormGroup, FormMessage, FormNeed } from "../core/form_data"
+import { recalled, remember } from "../core/memory"
 import { said } from "../core/words"
-import { rowOf, same, type FormHost, type Row, type RowForm } from "./fields"
-
-export type { FormHost } from "./fields"
+import { rowOf, same, type FormHost, type FieldRow, type RowForm } from "./fields"
 
 const OPENED = "onpath-groups" // which groups are open, in the browser's memory
 const LOW = 900 // [px] of the window's height, below which one group is open at a time
@@ -17,7 +16,7 @@ export class Form implements RowForm {
     private readonly main = made("div", "column")
     private readonly more = made("div", "column")
     private readonly groups = new Map<string, GroupView>()
-    private readonly rows = new Map<string, Row>()
+    private readonly rows = new Map<string, FieldRow>()
     private data: FormMessage | null = null
     private shown = ""
 
@@ -86,7 +85,7 @@ export class Form implements RowForm {
     readonly changed = (): void => this.update()
 
     /** The row of a field. */
-    readonly row = (name: string): Row | undefined => this.rows.get(name)
+    readonly row = (name: string): FieldRow | undefined => this.rows.get(name)
 
     /** Whether a field with these conditions acts. */
     acts(needs: FormField["needs"] = []): boolean {
@@ -147,9 +146,9 @@ class GroupView {
         const { texts } = form.host
         if (level === "deeper") {
             const details = (this.details = made("details", "", made("summary", "", this.title, this.state, this.dot), this.body))
-            details.open = remembered()[name] ?? false
+            details.open = opened()[name] ?? false
             details.addEventListener("toggle", () => {
-                remember(name, details.open)
+                remember(OPENED, { ...opened(), [name]: details.open })
                 if (details.open) form.opened(this)
             }, { signal })
             this.dot.setAttribute("role", "img")
@@ -232,7 +231,7 @@ class GroupView {
 
     private restore(): void {
         for (const { name } of this.group.fields) {
-            const row: Row = this.form.row(name)!
+            const row: FieldRow = this.form.row(name)!
             if (row.isChanged) row.restore()
         }
     }
@@ -249,19 +248,6 @@ function arrange(parent: HTMLElement, children: readonly HTMLElement[]): void {
     }
 }
 
-function remembered(): Record<string, boolean> {
-    try {
-        return Object(JSON.parse(localStorage.getItem(OPENED) ?? "{}")) as Record<string, boolean>
-    } catch {
-        return {} // a page without a memory, such as a file in a frame
-    }
+function opened(): Record<string, boolean> {
+    return Object(recalled(OPENED) ?? {}) as Record<string, boolean>
 }
-
-function remember(name: string, open: boolean): void {
-    try {
-        localStorage.setItem(OPENED, JSON.stringify({ ...remembered(), [name]: open }))
-    } catch {
-        // groups are closed again on the next visit
-    }
-}
-

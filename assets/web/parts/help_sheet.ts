@@ -6,7 +6,7 @@ import { said, type Texts } from "../core/words"
 import { pressed, SheetDialog } from "./sheet"
 
 /** What the help names, in this order. */
-export const AIDS = ["hold", "pull", "bend", "aim", "lens", "chart", "view", "search"] as const
+const AIDS = ["hold", "pull", "bend", "aim", "lens", "chart", "view", "search"] as const
 /** The keys by what they are for; the names of others begin with one of these. */
 const KINDS: Record<string, readonly string[]> = {
     time: ["run", "hold", "reset", "back", "forward", "go_on", "undo_go_on"],

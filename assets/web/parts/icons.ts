@@ -1,6 +1,6 @@
 // Small pictures on buttons, drawn with lines on a square of 24.
 
-const SVG = "http://www.w3.org/2000/svg"
+import { svg } from "../core/dom"
 
 const LINES = {
     help: "M12 3a9 9 0 1 0 0 18 9 9 0 0 0 0-18M9.2 9.3a2.8 2.8 0 1 1 4 2.9c-.9.5-1.2 1-1.2 2M12 17v.1",
@@ -16,11 +16,5 @@ const LINES = {
 export type Icon = keyof typeof LINES
 
 export function icon(name: Icon): SVGSVGElement {
-    const picture = document.createElementNS(SVG, "svg"), line = document.createElementNS(SVG, "path")
-    picture.setAttribute("viewBox", "0 0 24 24")
-    picture.setAttribute("class", "op-icon")
-    picture.setAttribute("aria-hidden", "true")
-    line.setAttribute("d", LINES[name])
-    picture.append(line)
-    return picture
+    return svg("svg", { viewBox: "0 0 24 24", class: "op-icon", "aria-hidden": "true" }, svg("path", { d: LINES[name] }))
 }

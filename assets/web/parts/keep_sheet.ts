@@ -1,7 +1,7 @@
 // Keep, share and export: the lab's code, a code of its set-up, files of the last minute, and the record of the lessons.
 
 import type { Command, KeepSheet, MakeFile, PageMessage } from "../channel/messages"
-import { made, tell } from "../core/dom"
+import { made, switchInput, tell } from "../core/dom"
 import { said, type Texts } from "../core/words"
 import { pressed, SheetDialog } from "./sheet"
 
@@ -25,8 +25,7 @@ export class Keep {
                 send({ do: "UseShared", text })
             }))
         const files = made("section", "", made("h3", "", said(texts, "export.title")), made("div", "row", ...(["table", "picture", "film"] as const).map(file => this.file(file))))
-        const withCode = Object.assign(made("input", "switch"), { type: "checkbox" })
-        withCode.setAttribute("role", "switch")
+        const withCode = switchInput()
         const record = made("section", "", made("h3", "", said(texts, "keep.record")), this.file("report", () => withCode.checked))
         sheet.body.append(sharing, files, record)
         if (code) {

@@ -6,9 +6,6 @@ import { projected, shares } from "../core/placing"
 import { said, written, type Texts } from "../core/words"
 import type { RemoteEngine } from "../channel/channel"
 
-/** Of quality.js, which comes before this script. */
-declare const webgl: { works: boolean }
-
 export class OverStage {
     readonly element: HTMLElement
     /** One for each robot, as wide as its part of the picture. */
@@ -40,9 +37,8 @@ export class OverStage {
         const { engine, texts } = this
         const { past, running } = engine.state
         engine.texts.forEach(({ title, name, text, caption }, i) => {
-            const [robot, law] = this.titles[i]!.firstElementChild!.children as unknown as [HTMLElement, HTMLElement]
-            tell(robot, name)
-            tell(law, name === title ? "" : title)
+            tell(this.titles[i]!.querySelector("b")!, name)
+            tell(this.titles[i]!.querySelector("small")!, name === title ? "" : title) // its law
             this.titles[i]!.title = text
             tell(this.captions[i]!.firstElementChild as HTMLElement, past === null ? caption : "")
         })

@@ -1,19 +1,18 @@
 // Shows on the page what is what: a line from each name to its thing, until one presses anywhere.
 
 import type { RemoteEngine } from "../channel/channel"
-import { made } from "../core/dom"
+import { made, svg } from "../core/dom"
 import { shown, type Vector } from "../core/engine"
+import type { Pixel } from "../core/ink"
+import { projected } from "../core/placing"
 import { said, type Texts } from "../core/words"
 import { pressed } from "./sheet"
 
-type Place = readonly [number, number]
-const SVG = "http://www.w3.org/2000/svg"
 const GAP = 10, AWAY = 56 // [px] between labels, and from a label to its thing
 
 /** Open the names over the page. */
 export function pointAtStage(texts: Texts, engine: RemoteEngine): void {
-    const dialog = made("dialog", "op-pointing"), lines = document.createElementNS(SVG, "svg")
-    lines.setAttribute("aria-hidden", "true")
+    const dialog = made("dialog", "op-pointing"), lines = svg("svg", { "aria-hidden": "true" })
     dialog.ariaLabel = said(texts, "help.point")
     const labels = Object.entries(places(engine)).flatMap(([name, place]) => {
         if (!place || !isInside(place)) return []
@@ -31,15 +30,13 @@ export function pointAtStage(texts: Texts, engine: RemoteEngine): void {
         label.style.left = `${at.x}px`
         label.style.top = `${at.y}px`
         taken.push(at)
-        const line = document.createElementNS(SVG, "path")
-        const from: Place = [clamp(place[0], at.left, at.right), clamp(place[1], at.top, at.bottom)]
-        line.setAttribute("d", `M${from.join(" ")} L${place.join(" ")} m-5 0 a5 5 0 1 0 10 0 a5 5 0 1 0 -10 0`)
-        lines.append(line)
+        const from: Pixel = [clamp(place[0], at.left, at.right), clamp(place[1], at.top, at.bottom)]
+        lines.append(svg("path", { d: `M${from.join(" ")} L${place.join(" ")} m-5 0 a5 5 0 1 0 10 0 a5 5 0 1 0 -10 0` }))
     }
 }
 
 /** Where the things are on the page; null if they are not there. */
-function places(engine: RemoteEngine): Record<string, Place | null> {
+function places(engine: RemoteEngine): Record<string, Pixel | null> {
     const points = engine.path.lines[0] ?? [], sample = shown(engine), [left, right] = [sample.sides[0], sample.sides[1] ?? sample.sides[0]]
     return {
         pull: right ? onStage(engine, right.tip, 1) : null,
@@ -52,7 +49,7 @@ function places(engine: RemoteEngine): Record<string, Place | null> {
     }
 }
 
-function middleOf(selector: string): Place | null {
+function middleOf(selector: string): Pixel | null {
     const element = [...document.querySelectorAll(selector)].find(each => each.checkVisibility())
     if (!element) return null
     const { left, top, width, height } = element.getBoundingClientRect()
@@ -60,15 +57,15 @@ function middleOf(selector: string): Place | null {
 }
 
 /** A point of a robot's output space in the picture. */
-function onStage({ lab }: RemoteEngine, point: Vector, side: number): Place | null {
+function onStage({ lab }: RemoteEngine, point: Vector, side: number): Pixel | null {
     const stage = document.querySelector("#op-stage")?.getBoundingClientRect(), camera = lab!.cameras[side]
     if (!stage || !camera) return null
-    const [x, y, away] = camera.map(row => point.reduce((sum, each, k) => sum + each * row[k]!, row[point.length]!))
-    return [stage.left + stage.width / 2 + (x! / away!) * stage.height, stage.top + stage.height / 2 + (y! / away!) * stage.height]
+    const [x, y] = projected(camera, point)
+    return [stage.left + stage.width / 2 + x * stage.height, stage.top + stage.height / 2 + y * stage.height]
 }
 
 /** A place for a label beside its thing where it lies over no other. */
-function free([x, y]: Place, { width, height }: DOMRect, taken: readonly DOMRect[]): DOMRect {
+function free([x, y]: Pixel, { width, height }: DOMRect, taken: readonly DOMRect[]): DOMRect {
     const candidates: DOMRect[] = []
     for (const away of [AWAY, 2 * AWAY, 3 * AWAY, 4.5 * AWAY])
         for (let turn = 0; turn < 12; turn++) {
@@ -82,4 +79,4 @@ function free([x, y]: Place, { width, height }: DOMRect, taken: readonly DOMRect
 }
 
 const clamp = (value: number, low: number, high: number): number => Math.min(Math.max(value, low), Math.max(high, low))
-const isInside = ([x, y]: Place): boolean => x > 0 && y > 0 && x < innerWidth && y < innerHeight
+const isInside = ([x, y]: Pixel): boolean => x > 0 && y > 0 && x < innerWidth && y < innerHeight

@@ -25,7 +25,7 @@ export function predictionAt(steps: StepData[], index: number): Prediction | nul
     for (const step of candidates)
         for (const [block, data] of (steps[step]?.blocks ?? []).entries())
             if (data.kind === "choice" || data.kind === "sketch")
-                return { step, block, data: data }
+                return { step, block, data }
     return null
 }
 
@@ -34,7 +34,7 @@ export function elementOf(prediction: Prediction): HTMLElement {
 }
 
 /** The parts of a prediction that stand elsewhere on the page than its question. */
-export interface Form {
+export interface PredictionForm {
     commit: HTMLButtonElement
     /** Where a curve is drawn; null if there is nothing to draw. */
     board: HTMLElement | null
@@ -45,7 +45,7 @@ export interface Form {
 }
 
 /** Make a prediction answerable. Once committed, it cannot be changed; a skipped one can still be made. */
-export function predict(page: PageData, prediction: Prediction, student: Student): Form {
+export function predict(page: PageData, prediction: Prediction, student: Student): PredictionForm {
     const element = elementOf(prediction)
     const answerKept = () => student.notes.answers[String(prediction.step)]
     const { data } = prediction

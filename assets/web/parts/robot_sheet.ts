@@ -1,6 +1,6 @@
 // The robots to choose from: a grid of pictures, with the arrow keys and Enter.
 
-import type { RobotCard, RobotSheet } from "../channel/messages"
+import type { RobotSheet } from "../channel/messages"
 import { made } from "../core/dom"
 import { said, type Texts } from "../core/words"
 import { pressed, SheetDialog } from "./sheet"
@@ -13,7 +13,8 @@ export function chooseRobot(texts: Texts, { robots }: RobotSheet, present: strin
             sheet.close()
             if (robot.name !== present) choose(robot.name)
         })
-        card.append(pictureOf(robot), made("b", "", robot.label), made("span", "differs", robot.differs))
+        const picture = Object.assign(made("img", "robot"), { src: robot.picture, alt: "" }) // its name stands beside it
+        card.append(picture, made("b", "", robot.label), made("span", "differs", robot.differs))
         card.title = robot.text
         card.tabIndex = robot.name === present ? 0 : -1
         if (robot.name === present) card.setAttribute("aria-current", "true")
@@ -36,9 +37,4 @@ export function chooseRobot(texts: Texts, { robots }: RobotSheet, present: strin
     sheet.body.append(grid)
     sheet.open(cards.find(card => card.tabIndex === 0) ?? cards[0])
     return sheet
-}
-
-/** The picture of a robot, whose name stands beside it. */
-export function pictureOf({ picture }: RobotCard): HTMLImageElement {
-    return Object.assign(made("img", "robot"), { src: picture, alt: "" })
 }

@@ -99,4 +99,3 @@ function significantly(texts: Texts, value: number, { bottom, top }: { bottom: n
     const decimals = Math.min(4, Math.max(0, 2 - Math.floor(Math.log10(top - bottom))))
     return written(texts, value, decimals)
 }
-

@@ -8,19 +8,17 @@ import { icon } from "./icons"
 export class SheetDialog {
     readonly element: HTMLDialogElement
     readonly body: HTMLElement
-    private readonly heading: HTMLElement
     private opener: HTMLElement | null = null
 
     /** `name`: of its style, such as "wide". `closed` is called whenever it has been closed. */
     constructor(texts: Texts, name: string, title: string, private readonly closed: () => void = () => {}) {
-        this.heading = made("h2", "", title)
-        this.heading.id = `op-sheet-${name}`
-        const cross = made("button", "op-cross", icon("close"))
-        Object.assign(cross, { type: "button", ariaLabel: said(texts, "help.close"), title: said(texts, "help.close") })
-        cross.addEventListener("click", () => this.close())
+        const heading = made("h2", "", title)
+        heading.id = `op-sheet-${name}`
+        const cross = pressed("op-cross", icon("close"), () => this.close())
+        cross.ariaLabel = cross.title = said(texts, "help.close")
         this.body = made("div", "body")
-        this.element = made("dialog", `op-sheet ${name}`, made("header", "", this.heading, cross), this.body)
-        this.element.setAttribute("aria-labelledby", this.heading.id)
+        this.element = made("dialog", `op-sheet ${name}`, made("header", "", heading, cross), this.body)
+        this.element.setAttribute("aria-labelledby", heading.id)
         let beside = false // whether a press has begun beside the sheet
         this.element.addEventListener("pointerdown", event => (beside = event.target === this.element))
         this.element.addEventListener("click", event => event.target === this.element && beside && this.close())
@@ -28,8 +26,6 @@ export class SheetDialog {
     }
 
     get isOpen(): boolean { return this.element.open }
-
-    set title(title: string) { this.heading.textContent = title }
 
     /** `first`: what gets the focus; else the first control after the cross, or the cross. */
     open(first?: HTMLElement | null): void {

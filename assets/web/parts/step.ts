@@ -7,7 +7,7 @@ import { said } from "../core/words"
 import { given, type Notes } from "../lessons/notes"
 import type { Student } from "../lessons/student"
 import { ask } from "./asked"
-import { Comparison, elementOf, predict, predictionAt, type Form, type Prediction } from "./predictions"
+import { Comparison, elementOf, predict, predictionAt, type Prediction, type PredictionForm } from "./predictions"
 
 const SMALLEST = 0.75 // of the size of a formula
 
@@ -35,7 +35,7 @@ export interface Places {
 
 export class StepView {
     /** The form of a prediction that is asked here. */
-    form: Form | null = null
+    form: PredictionForm | null = null
     private compared: Comparison | null = null
     private shown = "" // what it compares
     private played = false // whether the run was on when it was last looked at

@@ -6,7 +6,7 @@ import { said, written, type Texts } from "../core/words"
 import { valueAt, type Curve, type Span } from "./curves"
 
 /** A curve with a heading. */
-export interface Column extends Curve {
+export interface TableColumn extends Curve {
     name: string
     unit: string
 }
@@ -14,7 +14,7 @@ export interface Column extends Curve {
 const ROWS = 60 // at about this many instants
 
 /** A table that is made when it is opened. */
-export function tableOf(texts: Texts, label: () => string, columns: () => readonly Column[], spans: () => readonly Span[]): HTMLElement {
+export function tableOf(texts: Texts, label: () => string, columns: () => readonly TableColumn[], spans: () => readonly Span[]): HTMLElement {
     const body = made("div", "wide")
     body.tabIndex = 0 // so that keys scroll it
     const details = made("details", "table", made("summary", "", said(texts, "chart.table")), body)
@@ -27,7 +27,7 @@ export function tableOf(texts: Texts, label: () => string, columns: () => readon
     return details
 }
 
-function rowsOf(texts: Texts, columns: readonly Column[], spans: readonly Span[]): HTMLElement {
+function rowsOf(texts: Texts, columns: readonly TableColumn[], spans: readonly Span[]): HTMLElement {
     const heads = [said(texts, "chart.time"), ...columns.map(({ name, unit }) => `${name} [${unit}]`), said(texts, "chart.acts")]
     const row = (tag: "th" | "td", cells: string[]) => made("tr", "", ...cells.map(cell => made(tag, "", cell)))
     const all = columns.flatMap(({ times }) => [times[0] ?? Infinity, times[times.length - 1] ?? -Infinity])

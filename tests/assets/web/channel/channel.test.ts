@@ -17,8 +17,8 @@ const WORDS = { is: "words", language: "en", words: { a: "b" } }
 const FRAME = { is: "frame", rows: [row(0), row(16)], running: true, past: null, anew: true, fields: [] }
 const PATH = { is: "path", points: [[0, 0], [1000, 0], [1000, 1000], [0, 0]], closed: true, right: [1, 0], up: [0, 1] }
 const STATE = {
-    is: "state", v: 2, language: "en", robot: "five_bar", titles: ["a", "b"], names: ["a", "b"], texts: ["", ""], captions: ["", ""], clocks: [true, false],
-    stopped: [false, false], rate: 1, achieved: 1, together: true, undo: false, message: "", level: "", messages: 0, presenting: false, height: 1, apart: 0,
+    is: "state", language: "en", robot: "five_bar", titles: ["a", "b"], names: ["a", "b"], texts: ["", ""], captions: ["", ""], clocks: [true, false],
+    stopped: [false, false], rate: 1, achieved: 1, together: true, undo: false, message: "", level: "", messages: 0, presenting: false, height: 1,
     said: { voice: "", summary: "", summaries: 0, stopped: false, replays: false, earlier: "", sounds: false, invitation: "", act: null },
     cameras: [], arrow: 1, frozen: "", own: true, rows: [], laws: ["", ""], shared: "",
 }
