@@ -1065,7 +1065,6 @@ parameter-wall_z2-help = wo die Mitte der Wand ist, nach oben
 parameter-wall_angle-label = Wand: Winkel
 parameter-wall_angle-help = Richtung der freien Seite, gegen den Uhrzeigersinn von rechts aus; 90° ist oben
 
-
 parameter-presenting-label = Große Schrift
 parameter-presenting-help = die Texte sind größer, wie für einen Beamer
 
@@ -1760,18 +1759,14 @@ site-next_lesson = Nächste Lektion: { $title }
 site-end = Das Ende dieser Lektion
 site-features = Was diese Seiten nicht haben
 site-features_text = Diese Seiten haben keinen Bahneditor, kein eigenes Gesetz, keinen anderen Roboter und kein anderes Gesetz im selben Schritt, kein Diagramm außer dem des Abstands, keine Wand, keinen Start neben der Bahn, keine Identifikation, keine Klasse, keinen Konzepttest und kein CSV. Wo eine Lektion etwas davon benutzt, sagt sie es. Das Labor hat all das.
-site-control-editor = der Bahneditor
 site-control-gains = alle Verstärkungen und der Realismus
 site-control-plots = die anderen Diagramme
 site-control-past = das Zurückblicken
 site-control-robot = die Wahl des Roboters
 site-control-laws = die Wahl des Gesetzes
-site-control-flexible = Ausgang, Zugebene und Vergrößerung des elastischen Balkens
 site-control-identify = die Identifikation
 site-why-identify = sie braucht Aufzeichnungen jeder Millisekunde und die Statistik der Schätzwerte
-site-control-show = was in der Szene gezeigt wird: Beschriftungen, Schlauch, Koordinaten, Rangtest, beide Fehler, effektive Masse
 site-control-wall = die Wand
-site-control-start = der Start neben der Bahn
 site-control-path = die Wahl der Bahn
 
 ## Roboter aus Dateien

@@ -1352,18 +1352,14 @@ site-next_lesson = Next lesson: { $title }
 site-end = The end of this lesson
 site-features = What these pages do not have
 site-features_text = These pages have no path editor, no law of your own, no other robot or law in the same step, no plots but that of the distance, no wall, no start beside the path, no identification, no class, no concept test and no CSV. Where a lesson uses one of these, it says so. The lab has them.
-site-control-editor = the path editor
 site-control-gains = all gains and realism
 site-control-plots = the other plots
 site-control-past = looking back
 site-control-robot = the choice of the robot
 site-control-laws = the choice of the law
-site-control-flexible = output, pull plane and exaggeration of the flexible link
 site-control-identify = identification
 site-why-identify = it needs a record of every millisecond, and statistics of the estimates
-site-control-show = what is shown in the scene: labels, tube, coordinates, rank test, both errors, effective mass
 site-control-wall = the wall
-site-control-start = the start beside the path
 site-control-path = the choice of the path
 
 ## Robots from files

@@ -118,8 +118,10 @@ def lesson_page(
     """
     figures = list[dict[str, Any]]()
     for step in steps:
-        more = [each for values in step.remade.values() for each in values.values()]
-        figures += [each for each in (step.figure, *more) if each not in figures]
+        remade = (each for values in step.remade.values() for each in values.values())
+        for each in (step.figure, *remade):
+            if each not in figures:
+                figures.append(each)
     data = {
         "words": _messages(words) | check_words(words),
         "lesson": lesson.name,

@@ -15,7 +15,7 @@ from onpath.lessons.schema import Lesson, Step, Text
 from onpath.lessons.task_schema import Once, Reference, Setting, Task
 from onpath.lessons.words import Words
 from onpath.models.control.laws.own import short_name
-from onpath.models.control.settable import values_of
+from onpath.models.control.settable import value_of, values_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,14 +77,17 @@ def site_step(
         plays=script is not None,
         lacking=", ".join(f"{name} ({why})" if why else name for name, why in lacking.items()),
     )
+    shown, parameters = figure_of(figure, words), figure.choice.parameters
     return SiteStep(
         number=index + 1,
         html=html,
         data=data,
-        figure=figure_of(figure, words),
+        figure=shown,
         remade={
             name: {
-                str(value): figure_of(step_figure(lesson, index, {name: value}), words)
+                str(value): shown
+                if value == value_of(parameters, name)
+                else figure_of(step_figure(lesson, index, {name: value}), words)
                 for value in values
             }
             for name, values in figure.choice.remade.items()

@@ -14,11 +14,13 @@ from onpath.app.exports.standalone.drawings import SWITCHES, drawings_data
 from onpath.app.exports.standalone.figure_choice import FigureChoice, chosen
 from onpath.app.exports.standalone.figure_data import (
     changes_data,
-    figure_data,
+    common_data,
+    figure_numbers,
     stop_texts,
 )
 from onpath.app.exports.standalone.figure_form import figure_form
 from onpath.app.exports.standalone.setting_places import (
+    SettingPlaces,
     Unsupported,
     Used,
     page_values,
@@ -63,7 +65,7 @@ class StepFigure:
         drawings: what is drawn besides the robots.
         marks: texts and arrows beside the robots.
         plots: plots that the step shows besides the distance.
-        used: values that scripts and links give to parameters.
+        places: where the parameters act that change on the page.
     """
 
     choice: FigureChoice
@@ -71,7 +73,7 @@ class StepFigure:
     drawings: tuple[str, ...]
     marks: tuple[SceneMark, ...]
     plots: tuple[str, ...]
-    used: Used
+    places: SettingPlaces
 
     def script(self, script: Script | None) -> dict[str, Any] | None:
         """A script as data; None if there is none, or only the lab can play it."""
@@ -159,7 +161,7 @@ def step_figure(
     known, wanted = specs(type(figure.parameters)), dict.fromkeys(_expanded(scene.controls))
     used = _used(actions)
     settable = dict.fromkeys(name for name in (*wanted, *used) if name in known)
-    figure = _changing(figure, settable, used)
+    figure, places = _changing(figure, settable, used)
     figure = replace(figure, remade=_remade(figure, lesson, wanted))
     sliders = tuple(name for name in wanted if name in (*figure.changing, *figure.remade))
     lacking = [name for name in (*wanted, *own) if name not in (*sliders, *HERE)]
@@ -173,7 +175,7 @@ def step_figure(
         drawings=scene.show,
         marks=scene.marks,
         plots=scene.plots,
-        used=used,
+        places=places,
     )
 
 
@@ -210,7 +212,7 @@ def figure_of(figure: StepFigure, words: Words) -> dict[str, Any]:
         stop_texts(choice, law, curve, "alpha" in choice.changing, words)
         for law in choice.every_law
     ]
-    changes = changes_data(choice, figure.used)
+    changes = changes_data(choice, figure.places)
     views = [view_field(name, value, words) for name, value in figure.views.items()]
     own = {name: value_of(choice.parameters, name) for name in choice.remade}
     return {
@@ -255,7 +257,7 @@ def _shared_data(choice: FigureChoice, words: Words) -> dict[str, Any]:
     if key not in _SHARED:
         while len(_SHARED) >= MOST:
             _SHARED.pop(next(iter(_SHARED)))
-        _SHARED[key] = figure_data(shared, words)
+        _SHARED[key] = common_data(shared, words, figure_numbers(shared))
     return _SHARED[key]
 
 
@@ -325,12 +327,14 @@ def _used(actions: Iterable[Action]) -> Used:
     return used
 
 
-def _changing(figure: FigureChoice, names: Iterable[str], used: Used) -> FigureChoice:
-    """The figure on whose page as many of some parameters change as can."""
+def _changing(
+    figure: FigureChoice, names: Iterable[str], used: Used
+) -> tuple[FigureChoice, SettingPlaces]:
+    """The figure on whose page as many of some parameters change as can, and where they act."""
     left = tuple(name for name in names if len(page_values(figure, name, used)) > 1)
     while True:
         figure = replace(figure, changing=left)
-        found = setting_places(figure, used).names
-        if found >= {*left}:
-            return figure
-        left = tuple(name for name in left if name in found)
+        places = setting_places(figure, used)
+        if places.names >= {*left}:
+            return figure, places
+        left = tuple(name for name in left if name in places.names)

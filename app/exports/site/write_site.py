@@ -196,8 +196,6 @@ class _Writer:
 
     def _shared_kernels(self, figure: dict[str, Any]) -> dict[str, Any]:
         """The figure, with its module moved to a script that pages share, and named by it."""
-        if not figure:
-            return figure
         module = figure["module"]
         name = hashlib.sha256(module.encode()).hexdigest()[:16]
         file = self._folder / SHARED / "kernels" / f"{name}.js"

@@ -7,7 +7,6 @@ import math
 from base64 import b64encode
 from collections.abc import Mapping
 from dataclasses import asdict
-from types import MappingProxyType
 from typing import Any
 
 import casadi as ca
@@ -24,7 +23,7 @@ from onpath.app.exports.standalone.figure_module import (
 )
 from onpath.app.exports.standalone.figure_words import figure_words
 from onpath.app.exports.standalone.loop_variants import variants_of
-from onpath.app.exports.standalone.setting_places import Used, setting_places
+from onpath.app.exports.standalone.setting_places import SettingPlaces, setting_places
 from onpath.app.lab.path_editor import BLEND, HALVINGS
 from onpath.app.lab.plot_rows import row_data
 from onpath.app.lab.plot_samples import sample_layout
@@ -82,7 +81,17 @@ def figure_data(
     Args:
         numbers: what `figure_numbers` gives, if it has been called before.
     """
-    numbers = numbers or figure_numbers(figure)
+    return {
+        **common_data(figure, words, numbers or figure_numbers(figure)),
+        "form": figure_form(figure, words),
+        "changes": changes_data(figure, setting_places(figure, {})),
+        "drawings": drawings_data(figure, (), (), words),
+        "controls": figure.controls,
+    }
+
+
+def common_data(figure: FigureChoice, words: Words, numbers: Mapping[str, Any]) -> dict[str, Any]:
+    """The data of a figure without what its reader may do."""
     robot, curves = figure.machine, figure.paths
     first = next(iter(curves.values()))
     kernel = figure.kernel(figure.laws[0], first)
@@ -98,15 +107,11 @@ def figure_data(
         ),
         "sides": _sides(figure),
         "laws": _laws(figure, words),
-        "drawings": drawings_data(figure, (), (), words),
         "loops": loops_data(figure),
-        "changes": changes_data(figure),
         "paths": [
             {"label": path_label(name, words), **path}
             for name, path in zip(curves, numbers["paths"], strict=True)
         ],
-        "form": figure_form(figure, words),
-        "controls": figure.controls,
         "front": front_of(robot).tolist(),
         "box": numbers["box"],
         "off": OFF,
@@ -236,9 +241,8 @@ def _path(figure: FigureChoice, name: str, curve: Curve) -> dict[str, Any]:
     }
 
 
-def changes_data(figure: FigureChoice, used: Used = MappingProxyType({})) -> dict[str, Any]:
+def changes_data(figure: FigureChoice, places: SettingPlaces) -> dict[str, Any]:
     """What may change on the page: first values, and where they act."""
-    places = setting_places(figure, used)
     values = {name: value_of(figure.parameters, name) for name in sorted(places.names)}
     tables = [asdict(table) for table in places.tables]
     return {"values": values, "places": places.places, "tables": tables}

@@ -141,11 +141,22 @@ VALUES |= {
 }
 
 
-@settings(max_examples=100, deadline=None)
-@given(st.lists(st.fixed_dictionaries(VALUES).map(lambda f: StateMessage(**f)), min_size=1))
-def test_a_page_that_is_told_changes_knows_everything(states: list[StateMessage]) -> None:
+STATES = st.fixed_dictionaries(VALUES)
+
+
+@settings(max_examples=50, deadline=None)
+@given(STATES, STATES, st.lists(st.sets(st.sampled_from(sorted(VALUES)))))
+def test_a_page_that_is_told_changes_knows_everything(
+    some: dict[str, Any], others: dict[str, Any], turns: list[set[str]]
+) -> None:
+    """Whichever fields change from one value to another and back."""
     known, before = dict[str, Any](), None
-    for state in states:
+    for turn in [set[str](), *turns]:
+        some, others = (
+            one | {name: other[name] for name in turn}
+            for one, other in ((some, others), (others, some))
+        )
+        state = StateMessage(**some)
         if news := changes(state, before):
             told = msgspec.json.decode(encoded_changes(StateMessage, news))
             assert told["is"] == "state"
