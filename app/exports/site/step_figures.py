@@ -49,7 +49,7 @@ ALWAYS = ("pull", "hold", "run", "step", "reset", "plot")
 HERE = ("hold", "editor", "show", "start", "larger")
 """Controls besides parameters that a step's page has, too."""
 NO_RANGE: dict[str, Any] = {"low": 0.0, "high": 1.0, "step": 1.0, "options": []}
-GROUPS = {"flexible": ("output", "alpha")}
+STANDS_FOR = {"flexible": ("output", "alpha")}
 """Controls that stand for several parameters, of which the page has these."""
 MOST = 8  # figures in the cache; those of one lesson follow each other
 _SHARED: dict[Any, dict[str, Any]] = {}
@@ -315,7 +315,7 @@ def view_field(name: str, value: float | bool, words: Words) -> FormField:
 
 def _expanded(controls: Iterable[str]) -> list[str]:
     """The controls, with their parameters in place of a group."""
-    return [name for control in controls for name in GROUPS.get(control, (control,))]
+    return [name for control in controls for name in STANDS_FOR.get(control, (control,))]
 
 
 def _used(actions: Iterable[Action]) -> Used:

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from onpath.app.exports.site.step_data import SiteStep, site_step
-from onpath.app.exports.site.step_figures import GROUPS
+from onpath.app.exports.site.step_figures import STANDS_FOR
 from onpath.lessons.course import BUILT_IN, REFERENCE, read_course, read_references
 from onpath.lessons.labels import parameter_label
 from onpath.lessons.schema import Lesson, Step, Text
@@ -55,7 +55,7 @@ def lacks_of(lesson: Lesson, step: Step, site: SiteStep) -> list[str]:
     tools = {"editor": "drag", "show": "labels"}
     lacks = list[str]()
     if step.kind not in ("predict", "quiz"):
-        wanted = [each for name in scene.controls for each in GROUPS.get(name, (name,))]
+        wanted = [each for name in scene.controls for each in STANDS_FOR.get(name, (name,))]
         lacks += [name for name in wanted if tools.get(name, name) not in here]
     lacks += [name for name in scene.show if name not in here]
     lacks += [f"plot {name}" for name in scene.plots if name not in site.data["plots"]]

@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 from jinja2 import Environment, nodes
 
-from onpath.app.exports.site.step_figures import GROUPS, HERE
+from onpath.app.exports.site.step_figures import HERE, STANDS_FOR
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.plot_rows import ROWS
@@ -255,7 +255,7 @@ def test_what_the_program_names_has_words(words: Words) -> None:
     for row in ROWS:
         assert words(f"plot.{row.name}") and words(f"axis.{row.name}")
     for name in CONTROLS:
-        assert name in (*HERE, *GROUPS) or words(f"site.control.{name}")
+        assert name in (*HERE, *STANDS_FOR) or words(f"site.control.{name}")
     for key in KEYS:
         assert key.does(words) in help_text(words) and key.shown(words) in help_text(words)
     for channel in channels(FiveBarParameters()):
