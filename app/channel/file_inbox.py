@@ -16,6 +16,8 @@ from onpath.app.viser_adapter.file_uploads import (
 )
 from onpath.models.errors import CodedError
 
+MOST_BYTES = 1_000_000  # of a file with a path
+
 
 class FileInbox:
     """Takes the files of one page, one at a time, of limited size, in limited time, a few in a row.

@@ -24,7 +24,7 @@ class Ask(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="
 
 
 class Prefer(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="prefer"):
-    """Keep a switch in the browser; see `app.page.preferences`."""
+    """Keep a switch in the browser; see `app.view.preferences`."""
 
     name: Literal["speaks", "sounds"]
     on: bool

@@ -12,6 +12,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from importlib import import_module
 
+from onpath.app.channel.file_inbox import MOST_BYTES
 from onpath.app.common.error_log import log_error
 from onpath.app.exports.export_process import (
     ExportError,
@@ -29,7 +30,6 @@ from onpath.models.paths.nearest_path import nearest_path
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import Parameters
 
-MOST_BYTES = 1_000_000
 STARTING = 60.0  # [s] for the process to start
 SECONDS = 15.0  # [s] for one file
 process = ExportProcess()

@@ -10,9 +10,11 @@ from datetime import datetime
 
 from onpath.app.common.access_codes import shown
 from onpath.app.common.templates import render
-from onpath.app.exports.concept_test_facts import results_of
-from onpath.app.exports.curve_words import curve_words, number
-from onpath.app.exports.report_facts import (
+from onpath.app.exports.report_plot import draw_prediction
+from onpath.app.lab.lesson_state import LessonState
+from onpath.app.view.concept_test_facts import results_of
+from onpath.app.view.curve_words import curve_words, number
+from onpath.app.view.report_facts import (
     Chapter,
     chapters,
     numbers,
@@ -20,8 +22,6 @@ from onpath.app.exports.report_facts import (
     predictions,
     quizzes,
 )
-from onpath.app.exports.report_plot import draw_prediction
-from onpath.app.lab.lesson_state import LessonState
 from onpath.lessons.action_schema import RobotName
 from onpath.lessons.progress import Answer, Truth
 from onpath.lessons.record import QUANTITIES

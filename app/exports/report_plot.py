@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from onpath.app.common.palette import OF_SIDE, SELECTED
-from onpath.app.exports.curve_words import number
+from onpath.app.view.curve_words import number
 from onpath.lessons.action_schema import RobotName
 from onpath.lessons.progress import Answer, Truth
 from onpath.lessons.record import QUANTITIES

@@ -1,4 +1,4 @@
-"""The lessons and routes in the overview, and the student's position on a route, as HTML."""
+"""The lessons and routes in the overview, as HTML."""
 
 from __future__ import annotations
 
@@ -7,9 +7,7 @@ from onpath.app.lab.lesson_state import LessonState
 from onpath.app.view.lessons import route_stops
 from onpath.lessons.minutes import lesson_minutes
 from onpath.lessons.routes import Route
-from onpath.lessons.schema import (
-    Lesson,
-)
+from onpath.lessons.schema import Lesson
 
 
 def route_entry(route: Route, run: LessonState) -> str:
@@ -23,22 +21,6 @@ def route_entry(route: Route, run: LessonState) -> str:
         summary=route.text(route.summary, words.language),
         minutes=words("lesson.minutes", minutes=f"{route.minutes:g}"),
         stops=route_stops(route, run),
-    )
-
-
-def route_line(run: LessonState) -> str:
-    """The student's position on the route; empty if the open step is not on one."""
-    lesson, route = run.lesson, run.route
-    at = None if lesson is None or route is None else route.stop_of(lesson.name, run.index)
-    if at is None or route is None:
-        return ""
-    return run.words(
-        "route.here",
-        route=route.text(route.title, run.words.language),
-        stop=at + 1,
-        stops=len(route.stop),
-        last=route.stop[at].steps[1],
-        minutes=f"{route.stop[at].minutes:g}",
     )
 
 

@@ -10,10 +10,10 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page import lesson_html as page
 from onpath.app.page.concept_test.entry import entry_of_test
-from onpath.app.page.lesson_view import LessonView
 from onpath.app.page.panels.dialog import dialog
 from onpath.app.page.panels.slow_presses import on_menu_press
 from onpath.app.page.panels.widgets import Post, on_press
+from onpath.app.view.lesson_view import LessonView
 from onpath.lessons.concept_test.concept_test import AFTER, BEFORE
 from onpath.lessons.concept_test.titles import titles_of_tests
 from onpath.lessons.course import Course

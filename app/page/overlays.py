@@ -12,9 +12,9 @@ from typing import Generic, TypeVar
 
 import viser
 
+from onpath.app.common.background import Background, Submit
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of
 from onpath.app.lab.snapshots.snapshot import Motion
-from onpath.app.page.background import Background, Submit
 from onpath.app.scene.error_nodes import ErrorNodes
 from onpath.app.scene.mark_nodes import MarkNodes
 from onpath.app.scene.mass_nodes import MassNodes

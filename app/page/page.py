@@ -28,11 +28,12 @@ from onpath.app.page.step_controls import Build, StepControls
 from onpath.app.page.step_drawings import StepDrawings
 from onpath.app.scene.mouse import SceneCallbacks
 from onpath.app.scene.pointer_projection import plane_coordinates
-from onpath.app.scene.projection import Seen, seen_by, seen_from
+from onpath.app.scene.projection import seen_by, seen_from
 from onpath.app.scene.scene import Scene
 from onpath.app.scene.stage import NARROW, Insets, view_of
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.scene.tones import DARK, LIGHT
+from onpath.app.view.state_message import Projection
 from onpath.app.viser_adapter.frame_channel import FrameChannel
 from onpath.app.viser_adapter.local_storage import ask_item
 from onpath.app.viser_adapter.page_release import clear_widgets
@@ -148,7 +149,7 @@ class Page:
         """Send the frame to the browser."""
         self._channel.send()
 
-    def seen(self, snapshot: PageSnapshot) -> Seen:
+    def seen(self, snapshot: PageSnapshot) -> Projection:
         """How the picture shows the robots, or how it will as soon as its camera is in place."""
         camera = self._client.camera
         if self._stands and not self.is_outdated:

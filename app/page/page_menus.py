@@ -14,7 +14,7 @@ from onpath.app.page.panels.glossary import glossary_html
 from onpath.app.page.panels.keys import help_text
 from onpath.app.page.panels.slow_presses import on_menu_press
 from onpath.app.page.panels.widgets import Post, add_menu, on_user_update
-from onpath.app.page.preferences import Preferences, Switch
+from onpath.app.view.preferences import Preferences, Switch
 from onpath.lessons.words import Words, language_name, languages
 
 HALF = "dark"

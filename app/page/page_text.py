@@ -10,14 +10,13 @@ from msgspec.structs import replace
 from onpath.app.channel.messages import StateMessage, StoredName
 from onpath.app.common.work_thread import WorkThread
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
-from onpath.app.page.first_minute import KEPT_AS, FirstMinute
-from onpath.app.page.lesson_column import LessonColumn
-from onpath.app.page.narration import Narration
-from onpath.app.page.preferences import Preferences
-from onpath.app.page.state_message import state_message
 from onpath.app.page.teacher_context import TeacherContext
-from onpath.app.scene.captions import Captions
-from onpath.app.scene.projection import Seen
+from onpath.app.view.captions import Captions
+from onpath.app.view.first_minute import KEPT_AS, FirstMinute
+from onpath.app.view.lesson_column import LessonColumn
+from onpath.app.view.narration import Narration
+from onpath.app.view.preferences import Preferences
+from onpath.app.view.state_message import Projection, state_message
 from onpath.lessons.course import Course
 from onpath.lessons.words import Words
 
@@ -74,7 +73,7 @@ class PageText:
         if self.column is not None:
             self.column.follow(snapshot)
 
-    def state(self, snapshot: PageSnapshot, seen: Seen, scene: int) -> StateMessage:
+    def state(self, snapshot: PageSnapshot, seen: Projection, scene: int) -> StateMessage:
         """The message of the lab's state.
 
         Args:

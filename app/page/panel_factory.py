@@ -7,10 +7,10 @@ from typing import Protocol
 
 import viser
 
+from onpath.app.common.background import Submit
 from onpath.app.exports.exporter import Exporter
 from onpath.app.exports.path_upload import PathReader
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
-from onpath.app.page.background import Submit
 from onpath.app.page.build_queue import one_at_a_time
 from onpath.app.page.overlays import Overlays
 from onpath.app.page.page_context import PageContext

@@ -7,8 +7,8 @@ from collections.abc import Callable
 import viser
 
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
-from onpath.app.page.lesson_view import NO_SETUP, LessonView
 from onpath.app.page.panel_factory import IN_STRIP, Part
+from onpath.app.view.lesson_view import NO_SETUP, LessonView
 from onpath.lessons.action_schema import StepSetup
 from onpath.lessons.course import Course
 from onpath.lessons.words import Words

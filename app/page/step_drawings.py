@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
-from onpath.app.page.lesson_view import LessonView
 from onpath.app.page.overlays import Overlays
+from onpath.app.view.lesson_view import LessonView
 from onpath.lessons.course import Course
 from onpath.lessons.words import Words
 

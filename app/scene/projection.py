@@ -2,47 +2,27 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import viser
 from viser.transforms import SO3
 
 from onpath.app.scene.stage import FIELD_OF_VIEW, FIRST_SIZE, Insets, Pose, Stage, view_of
+from onpath.app.view.state_message import Projection
 from onpath.models.systems.robots import Robot
 
 
-@dataclass(frozen=True, slots=True)
-class Seen:
-    """How the picture shows the robots.
-
-    Attributes:
-        height: that the canvas shows at the distance of the robots, [m].
-        cameras: one for each robot, shape (k, 3, p + 1); see `projections`.
-        drawn: whether the picture does so already.
-        above: the point of the output space that is nearest to a title's place, shape (p,), [m].
-        arrow: length of the arrow of a force [m/N].
-    """
-
-    height: float
-    drawn: bool
-    cameras: np.ndarray
-    above: np.ndarray
-    arrow: float
-
-
-def seen_at_first(stage: Stage, robot: Robot) -> Seen:
+def seen_at_first(stage: Stage, robot: Robot) -> Projection:
     """How the robots of a stage are seen before a camera has reported; see `set_initial_camera`."""
     return seen_from(view_of(stage, FIRST_SIZE, Insets()), stage, robot)
 
 
-def seen_by(camera: viser.CameraHandle, stage: Stage, robot: Robot) -> Seen:
+def seen_by(camera: viser.CameraHandle, stage: Stage, robot: Robot) -> Projection:
     """How a camera shows the robots of a stage."""
     pose = Pose(np.asarray(camera.position), np.asarray(camera.look_at))
     return _seen(True, pose, np.asarray(camera.wxyz), camera.fov, stage, robot)
 
 
-def seen_from(pose: Pose, stage: Stage, robot: Robot) -> Seen:
+def seen_from(pose: Pose, stage: Stage, robot: Robot) -> Projection:
     """How the robots of a stage will be shown by a camera that is placed there, upright."""
     forward = pose.look_at - pose.position
     right = np.cross(forward, [0.0, 0.0, 1.0])
@@ -54,9 +34,9 @@ def seen_from(pose: Pose, stage: Stage, robot: Robot) -> Seen:
 
 def _seen(
     drawn: bool, pose: Pose, wxyz: np.ndarray, fov: float, stage: Stage, robot: Robot
-) -> Seen:
+) -> Projection:
     distance = np.linalg.norm(pose.look_at - pose.position)
-    return Seen(
+    return Projection(
         drawn=drawn,
         height=float(2 * distance * np.tan(fov / 2)),
         cameras=projections(pose.position, wxyz, fov, stage.origins, robot),

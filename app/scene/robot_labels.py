@@ -8,9 +8,9 @@ import numpy as np
 
 from onpath.app.lab.snapshots.snapshot import END, Motion
 from onpath.app.scene.arrows import Arrows, ArrowShape
-from onpath.app.scene.label_geometry import axes_of, label_function
 from onpath.app.scene.moving_lines import MOVED, MovingLines
 from onpath.app.scene.stage import Stage, add_text
+from onpath.app.view.label_geometry import axes_of, label_function
 from onpath.app.viser_adapter.frame_channel import move_node
 from onpath.models.closed_loop.buffered import Buffered
 from onpath.models.systems.robots import Robot

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from onpath.app.lab.snapshots.snapshot import Motion, PathSnapshot, Snapshot
-from onpath.app.scene.captions import Captions
 from onpath.app.scene.contact_nodes import ContactNodes
 from onpath.app.scene.hand_nodes import HandNodes
 from onpath.app.scene.mouse import Mouse, SceneCallbacks
@@ -33,6 +32,7 @@ from onpath.app.scene.stage import (
 from onpath.app.scene.start_nodes import StartNodes
 from onpath.app.scene.strokes.freehand import Freehand
 from onpath.app.scene.wall_nodes import WallNodes
+from onpath.app.view.captions import Captions
 from onpath.app.viser_adapter.camera import place_camera
 from onpath.lessons.words import ENGLISH, Words
 

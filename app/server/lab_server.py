@@ -23,7 +23,6 @@ from onpath.app.exports import exporter as exports
 from onpath.app.exports import path_upload
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.page.build_queue import BuildQueue, one_at_a_time
-from onpath.app.page.own_part import own_part
 from onpath.app.page.page import Page
 from onpath.app.page.page_context import PageContext
 from onpath.app.page.page_text import PageText
@@ -38,6 +37,7 @@ from onpath.app.server.heap import limit_heap
 from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_registry import LabRegistry, RegisteredLab
 from onpath.app.server.new_lab import new_lab
+from onpath.app.server.own_part import own_part
 from onpath.app.server.page_data import PageData
 from onpath.app.server.robot_shapes import prepare_shapes
 from onpath.app.server.server_options import USUAL, ServerOptions

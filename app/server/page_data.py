@@ -43,14 +43,14 @@ from onpath.app.lab.snapshots.snapshot import Motion, PathSnapshot
 from onpath.app.page.page import Page
 from onpath.app.page.page_context import PageContext
 from onpath.app.page.page_requests import PageRequests
-from onpath.app.page.strip_words import words_message
-from onpath.app.scene.projection import Seen as View
 from onpath.app.scene.projection import seen_at_first
 from onpath.app.scene.stage_catalogue import stage_of
-from onpath.app.scene.symbol_geometry import has_meaning, symbol_lines
 from onpath.app.server.page_files import PageFiles
 from onpath.app.server.page_form import PageForm
 from onpath.app.server.tab_visibility import TabVisibility
+from onpath.app.view.page_words import words_message
+from onpath.app.view.state_message import Projection
+from onpath.app.view.symbol_geometry import has_meaning, symbol_lines
 from onpath.app.viser_adapter.data_channel import Message, PageStream
 from onpath.models.systems.robots import Robot
 
@@ -79,7 +79,7 @@ class PageData:
         self._source, self._opened = FrameSource(), 0
         self._path: PathSnapshot | None = None
         self._robot: Robot | None = None
-        self._view: tuple[Robot, View] | None = None  # the robots, with a scene or without
+        self._view: tuple[Robot, Projection] | None = None  # the robots, with a scene or without
         self._language = ""
         self._state: StateMessage | None = None
         self._files = PageFiles(own.post, context.code if context.keep_days else "")
@@ -197,7 +197,7 @@ class PageData:
                 messages.append(partial(bytes, column.measured))
         return messages
 
-    def _seen_on(self, snapshot: PageSnapshot, page: Page | None, robot: Robot) -> View:
+    def _seen_on(self, snapshot: PageSnapshot, page: Page | None, robot: Robot) -> Projection:
         """How the picture shows the robots, or would, if there is none."""
         if page is not None:
             self._view = robot, page.seen(snapshot)

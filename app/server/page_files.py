@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from msgspec import Struct
 from typing_extensions import override
 
-from onpath.app.channel.file_inbox import FileInbox
+from onpath.app.channel.file_inbox import MOST_BYTES, FileInbox
 from onpath.app.channel.messages import (
     DownloadMessage,
     DownloadPart,
@@ -22,7 +22,7 @@ from onpath.app.channel.messages import (
     SendPart,
 )
 from onpath.app.exports.exporter import Delivery, Exporter
-from onpath.app.exports.path_upload import MOST_BYTES, PathReader, Upload
+from onpath.app.exports.path_upload import PathReader, Upload
 from onpath.app.lab.lab import Command, Lab
 from onpath.app.viser_adapter.file_uploads import SECONDS
 from onpath.lessons.words import Words

@@ -20,7 +20,6 @@ from onpath.app.channel.messages import (
 from onpath.app.lab.commands import ChooseLaw, ChoosePath, PlacePoint, SelectPoint, Set, TypeLaw
 from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
-from onpath.app.page.lesson_view import NO_SETUP, LessonView
 from onpath.app.page.overlays import Switches
 from onpath.app.page.page import Page
 from onpath.app.view.lab_form import (
@@ -31,6 +30,7 @@ from onpath.app.view.lab_form import (
     switch_name,
     values_in,
 )
+from onpath.app.view.lesson_view import NO_SETUP, LessonView
 from onpath.lessons.action_schema import StepSetup
 from onpath.lessons.course import Course
 from onpath.lessons.words import Words

@@ -99,3 +99,19 @@ def route_stops(route: Route, run: LessonState) -> list[str]:
 def _test_stop(name: str, title: str, run: LessonState) -> str:
     minutes, _ = lesson_minutes(run.course.lesson(name, run.words.language))
     return f"{title}, {run.words('lesson.minutes', minutes=minutes)}"
+
+
+def route_line(run: LessonState) -> str:
+    """The student's position on the route; empty if the open step is not on one."""
+    lesson, route = run.lesson, run.route
+    at = None if lesson is None or route is None else route.stop_of(lesson.name, run.index)
+    if at is None or route is None:
+        return ""
+    return run.words(
+        "route.here",
+        route=route.text(route.title, run.words.language),
+        stop=at + 1,
+        stops=len(route.stop),
+        last=route.stop[at].steps[1],
+        minutes=f"{route.stop[at].minutes:g}",
+    )

@@ -18,8 +18,8 @@ pytest.importorskip("playwright")
 
 from playwright.sync_api import Browser
 
-from onpath.app.page.own_part import own_part
 from onpath.app.server.lab_server import LabServer
+from onpath.app.server.own_part import own_part
 from onpath.app.viser_adapter.page_scripts import our_scripts
 from tests.support.own_socket import OwnSocket
 from tests.support.student import Student

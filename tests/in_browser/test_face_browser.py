@@ -15,8 +15,8 @@ from playwright.sync_api import Browser, ViewportSize, expect
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.loops.loop_cache import LoopCache
-from onpath.app.page.first_minute import INVITATIONS
 from onpath.app.server.lab_server import LabServer
+from onpath.app.view.first_minute import INVITATIONS
 from tests.support.axe import violations
 from tests.support.browser import WAIT, Tab, wait_for
 

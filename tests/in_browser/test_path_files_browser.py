@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from onpath.app.exports.path_upload import MOST_BYTES
+from onpath.app.channel.file_inbox import MOST_BYTES
 from tests.support.browser import Tab
 from tests.support.waiting import wait_for
 

@@ -18,9 +18,9 @@ from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.plot_samples import sample_layout
 from onpath.app.lab.snapshots.take_snapshot import take_motion
 from onpath.app.scene.stage_catalogue import stage_of
-from onpath.app.scene.symbol_geometry import AT_JOINTS, has_meaning, symbol_lines
 from onpath.app.server.lab_server import LabServer
 from onpath.app.server.server_options import ServerOptions
+from onpath.app.view.symbol_geometry import AT_JOINTS, has_meaning, symbol_lines
 from onpath.lessons.course import read_course
 from onpath.lessons.symbols import SYMBOLS
 from onpath.models.arrays import Array

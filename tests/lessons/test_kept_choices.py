@@ -22,9 +22,9 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.setups.setup import Setup
 from onpath.app.lab.setups.stored import to_data
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
-from onpath.app.page.lesson_message import lesson_message
-from onpath.app.page.lesson_view import LessonView
 from onpath.app.storage.lab_state import keep, put_back
+from onpath.app.view.lesson_message import lesson_message
+from onpath.app.view.lesson_view import LessonView
 from onpath.lessons.course import Course, read_course
 from onpath.lessons.kept.known_choices import of_today
 from onpath.lessons.progress import Answer, Notes, Progress, read_progress

@@ -10,7 +10,7 @@ import pytest
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
-from onpath.app.page.lesson_view import LessonView
+from onpath.app.view.lesson_view import LessonView
 from onpath.lessons.schema import Choice, Lesson, NumberQuestion, Quiz, Step, Text
 from onpath.lessons.task_schema import Event, Order, Setting, Task
 from onpath.models.systems.catalogue import FIVE_BAR

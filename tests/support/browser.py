@@ -20,13 +20,13 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.simulation import Simulation
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.take_snapshot import page_key
-from onpath.app.page.first_minute import INVITATIONS, KEPT_AS
 from onpath.app.page.teacher_page import TeacherPage
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_server import LabServer
 from onpath.app.simulation.frame_length import FRAME
 from onpath.app.simulation.scheduled_lab import ScheduledLab
+from onpath.app.view.first_minute import INVITATIONS, KEPT_AS
 from onpath.models.systems.parameters import time_step
 from tests.bench.mouse_latency import ARGUMENTS, NO_TRIANGLES
 from tests.support import waiting

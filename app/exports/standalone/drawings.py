@@ -14,13 +14,13 @@ import casadi as ca
 import numpy as np
 
 from onpath.app.exports.standalone.figure_choice import FigureChoice
-from onpath.app.scene.label_geometry import axes_of, label_function
 from onpath.app.scene.mass_nodes import LARGEST, OF_A_KILOGRAM, SIDES
 from onpath.app.scene.rank_nodes import map_opacity, rank_picture
 from onpath.app.scene.robot_labels import PAST, SUBSCRIPTS
 from onpath.app.scene.stage import PlanePicture
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.scene.tube_nodes import ALONG, LINES, tube_sizes
+from onpath.app.view.label_geometry import axes_of, label_function
 from onpath.lessons.action_schema import SceneMark
 from onpath.lessons.words import Words
 from onpath.models.arrays import Array

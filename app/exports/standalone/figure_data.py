@@ -27,7 +27,7 @@ from onpath.app.exports.standalone.setting_places import SettingPlaces, setting_
 from onpath.app.lab.path_editor import BLEND, HALVINGS
 from onpath.app.lab.plot_rows import row_data
 from onpath.app.lab.plot_samples import sample_layout
-from onpath.app.scene.captions import FULL, OFF, RETURNS
+from onpath.app.view.captions import FULL, OFF, RETURNS
 from onpath.lessons.labels import path_label
 from onpath.lessons.sides import law_text, law_titles
 from onpath.lessons.words import Words

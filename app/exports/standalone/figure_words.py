@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from onpath.app.view.forms import form_words
+from onpath.app.view.page_words import CHART
 from onpath.lessons.sides import law_titles
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.trajectory import Trajectory
@@ -14,12 +15,6 @@ from onpath.models.control.sides import SIDES
 from onpath.models.paths.curve_fit import SHORTEST
 from onpath.models.paths.path_checks import TUBE
 
-CHART = (
-    *("chart.title", "chart.held", "chart.pulled", "chart.centre", "chart.table", "chart.time"),
-    *("chart.acts", "chart.look", "chart.look_hint", "chart.yours", "chart.draw"),
-    *("plots.menu", "plots.menu_hint", "plot.phase", "plot.phase_name"),
-)
-"""Messages of the plots, which figures and lessons have."""
 PLAIN = (
     *CHART,
     *("lens.closest", "lens.reference", "lens.straight"),

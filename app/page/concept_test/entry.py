@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from onpath.app.common.templates import render
 from onpath.app.lab.lesson_state import LessonState
-from onpath.lessons.concept_test.concept_test import chosen_in
 from onpath.lessons.concept_test.titles import titles_of_tests
 from onpath.lessons.minutes import lesson_minutes
 from onpath.lessons.progress import Notes
@@ -24,11 +23,3 @@ def entry_of_test(name: str, run: LessonState) -> str:
         finished=notes.handed_in,
         name=words("test.open_name", title=title),
     )
-
-
-def answered_line(run: LessonState) -> str:
-    """How many questions of the open test are answered."""
-    assert run.lesson is not None
-    chosen = chosen_in(run.lesson, run.notes)
-    part = sum(option is not None for option in chosen)
-    return run.words("test.answered", part=part, all=len(chosen))

@@ -8,10 +8,10 @@ from collections.abc import Callable
 import numpy as np
 import viser
 
+from onpath.app.common.background import Background, Submit
 from onpath.app.common.templates import render
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of
-from onpath.app.page.background import Background, Submit
 from onpath.app.page.panels.widgets import (
     ParameterWidgets,
     Post,

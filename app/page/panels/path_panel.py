@@ -7,7 +7,8 @@ from collections.abc import Callable
 import numpy as np
 import viser
 
-from onpath.app.exports.path_upload import MOST_BYTES, PathReader, Upload
+from onpath.app.channel.file_inbox import MOST_BYTES
+from onpath.app.exports.path_upload import PathReader, Upload
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of, robot_of
 from onpath.app.page.overlays import Switches

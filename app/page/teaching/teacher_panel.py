@@ -11,9 +11,9 @@ import viser
 from onpath.app.classroom import class_html as page
 from onpath.app.classroom.class_record import class_record
 from onpath.app.classroom.concept_test_results import sheets_without_names
+from onpath.app.common.background import Submit
 from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
-from onpath.app.page.background import Submit
 from onpath.app.page.panels.dialog import mark_closing
 from onpath.app.page.panels.widgets import Post, note, on_press, on_user_update, put
 from onpath.app.page.teacher_context import TeacherContext

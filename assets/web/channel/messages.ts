@@ -197,7 +197,7 @@ export interface Freehand {
     is: "freehand"
 }
 
-/** Keep a switch in the browser; see `app.page.preferences`. */
+/** Keep a switch in the browser; see `app.view.preferences`. */
 export interface Prefer {
     is: "prefer"
     name: "sounds" | "speaks"

@@ -25,9 +25,9 @@ from onpath.app.exports.report import report
 from onpath.app.lab.lesson_run import LessonRun
 from onpath.app.lab.snapshots.page_snapshot import LessonSnapshot
 from onpath.app.page import lesson_html
-from onpath.app.page.lesson_message import lesson_message
-from onpath.app.page.lesson_view import LessonView
 from onpath.app.page.panels.flexible_panel import alpha_bar
+from onpath.app.view.lesson_message import lesson_message
+from onpath.app.view.lesson_view import LessonView
 from onpath.assets import asset_path
 from onpath.lessons.course import Course
 from onpath.lessons.progress import Answer, Notes, Progress

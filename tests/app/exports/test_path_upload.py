@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from onpath.app.channel.file_inbox import MOST_BYTES
 from onpath.app.exports import path_upload
 from onpath.app.exports.export_process import ExportProcess
-from onpath.app.exports.path_upload import MOST_BYTES, PathReader, Upload
+from onpath.app.exports.path_upload import PathReader, Upload
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.lessons.words import ENGLISH

@@ -13,8 +13,8 @@ from onpath.app.cli.main import run_command
 from onpath.app.exports.site.pages import MESSAGES, POLICY
 from onpath.app.exports.site.step_figures import figure_of, step_figure
 from onpath.app.exports.site.task_data import MESSAGES as CHECKS
-from onpath.app.page.strip_words import words_message
 from onpath.app.steps.player_words import player_words
+from onpath.app.view.page_words import words_message
 from onpath.assets import asset_path
 from onpath.lessons.course import BUILT_IN, REFERENCE, read_course, read_references
 from onpath.lessons.schema import Text

@@ -13,9 +13,9 @@ from onpath.app.exports.site.step_figures import figure_of, step_figure
 from onpath.app.exports.standalone.drawings import SWITCHES, drawings_data
 from onpath.app.exports.standalone.figure_choice import chosen
 from onpath.app.exports.standalone.figure_data import figure_data
-from onpath.app.scene.label_geometry import label_function
 from onpath.app.scene.mass_nodes import SIDES, ellipse
 from onpath.app.scene.tube_nodes import tube_shape
+from onpath.app.view.label_geometry import label_function
 from onpath.lessons.course import BUILT_IN, read_course
 from onpath.lessons.words import ENGLISH
 from onpath.models.arrays import Array

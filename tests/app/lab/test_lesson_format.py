@@ -15,7 +15,7 @@ from onpath.app.lab.dry_runs.course_check import lab_at, play
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.lesson_record import Beginning, record_of
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
-from onpath.app.page.lesson_view import LessonView
+from onpath.app.view.lesson_view import LessonView
 from onpath.lessons.action_schema import Action, Script
 from onpath.lessons.adaptive.branches import answers_meant, is_shown
 from onpath.lessons.adaptive.own_numbers import filled

@@ -8,8 +8,8 @@ from collections.abc import Mapping
 from onpath.app.channel.messages import Said
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.snapshot import Snapshot
-from onpath.app.page.first_minute import FirstMinute
-from onpath.app.scene.captions import Captions, spoken
+from onpath.app.view.captions import Captions, spoken
+from onpath.app.view.first_minute import FirstMinute
 from onpath.lessons.labels import parameter_label, path_label, value_label
 from onpath.lessons.sides import displayed_names
 from onpath.lessons.words import Words

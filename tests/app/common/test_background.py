@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from onpath.app.page.background import Background
+from onpath.app.common.background import Background
 
 
 def test_a_computation_that_fails_can_be_asked_for_again() -> None:

@@ -18,10 +18,10 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.plot_rows import row_data
 from onpath.app.lab.plot_samples import sample_layout
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
-from onpath.app.page.lesson_message import lesson_message, measured
-from onpath.app.page.lesson_view import LessonView
-from onpath.app.page.step_navigation import RECORD
 from onpath.app.steps.block_data import limits_data
+from onpath.app.view.lesson_message import lesson_message, measured
+from onpath.app.view.lesson_view import LessonView
+from onpath.app.view.step_navigation import RECORD
 from onpath.lessons.concept_test.concept_test import AFTER, BEFORE
 from onpath.lessons.progress import Answer, Truth
 from onpath.lessons.schema import KINDS, Choice, NumberQuestion, OpenQuestion, Quiz, Sketch, Step

@@ -9,15 +9,15 @@ from typing import Any
 import msgspec
 import pytest
 
-from onpath.app.exports.concept_test_facts import results_of
 from onpath.app.exports.report import report
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
-from onpath.app.page.lesson_end import end_html
-from onpath.app.page.lesson_view import LessonView
 from onpath.app.storage.lab_state import keep, put_back
+from onpath.app.view.concept_test_facts import results_of
+from onpath.app.view.lesson_end import end_html
+from onpath.app.view.lesson_view import LessonView
 from onpath.lessons.concept_test.concept_test import AFTER, BEFORE, questions
 from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import FIVE_BAR

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from onpath.app.channel.messages import encoded
+from onpath.app.common.background import Submit
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
-from onpath.app.page.background import Submit
-from onpath.app.page.lesson_message import lesson_message, measured
-from onpath.app.page.lesson_view import LessonView
+from onpath.app.view.lesson_message import lesson_message, measured
+from onpath.app.view.lesson_view import LessonView
 from onpath.lessons.course import Course
 from onpath.lessons.words import Words
 from onpath.models.systems.robots import Robot

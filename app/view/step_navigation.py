@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from onpath.app.page.concept_test.entry import answered_line
-from onpath.app.page.lesson_view import LessonView
+from onpath.app.view.lesson_view import LessonView
+from onpath.lessons.concept_test.concept_test import chosen_in
 
 Sent = dict[str, Any]
 """A command as a page's script sends it; see app/lab/commands/command_codec.py."""
@@ -58,7 +58,7 @@ def pager_of(run: LessonView) -> Pager:
     back = LessonButton(words("lesson.back"), [BACK], short="←")
     if run.ended:
         return Pager("", [], None if run.is_test else back, [])
-    remark = answered_line(run) if run.is_test else ""
+    remark = _answered(run) if run.is_test else ""
     if not run.may_go(1):
         remark = words("lesson.wait")
     return Pager(
@@ -98,3 +98,11 @@ def _past(run: LessonView) -> list[LessonButton]:
         return [LessonButton(run.words("lesson.past_all"), [FINISH])]
     name = run.words("lesson.past_optional", step=run.index + 1 + past)
     return [LessonButton(name, [{"do": "GoToStep", "by": past}])]
+
+
+def _answered(run: LessonView) -> str:
+    """How many questions of the open test are answered."""
+    assert run.lesson is not None
+    chosen = chosen_in(run.lesson, run.notes)
+    part = sum(option is not None for option in chosen)
+    return run.words("test.answered", part=part, all=len(chosen))

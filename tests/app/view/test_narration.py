@@ -9,9 +9,9 @@ from itertools import pairwise
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
-from onpath.app.page.narration import RENEWED, Narration
-from onpath.app.page.preferences import DEFAULTS
-from onpath.app.scene.captions import Captions
+from onpath.app.view.captions import Captions
+from onpath.app.view.narration import RENEWED, Narration
+from onpath.app.view.preferences import DEFAULTS
 from onpath.lessons.words import ENGLISH
 from tests.support.built_in import built_in_course
 from tests.support.lab import do, loop_cache, new_lab, run

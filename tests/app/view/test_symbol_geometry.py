@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from onpath.app.lab.snapshots.snapshot import Counts, Motion, PageKey, PathSnapshot
-from onpath.app.scene.symbol_geometry import AT_JOINTS, has_meaning, symbol_lines
+from onpath.app.view.symbol_geometry import AT_JOINTS, has_meaning, symbol_lines
 from onpath.models.arrays import Array
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.file_chain import Options

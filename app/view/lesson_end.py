@@ -7,9 +7,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from onpath.app.common.templates import Markup, part_of_page
-from onpath.app.exports.concept_test_facts import results_of
-from onpath.app.exports.curve_words import curve_words
-from onpath.app.exports.report_facts import (
+from onpath.app.steps.block_data import answer_data, curves_data, script_data, sketch_data
+from onpath.app.view.concept_test_facts import results_of
+from onpath.app.view.curve_words import curve_words
+from onpath.app.view.lesson_view import LessonView
+from onpath.app.view.report_facts import (
     Chapter,
     chapters,
     numbers,
@@ -17,9 +19,7 @@ from onpath.app.exports.report_facts import (
     predictions,
     quizzes,
 )
-from onpath.app.page.lesson_view import LessonView
-from onpath.app.page.step_navigation import RECORD, LessonButton, Sent
-from onpath.app.steps.block_data import answer_data, curves_data, script_data, sketch_data
+from onpath.app.view.step_navigation import RECORD, LessonButton, Sent
 from onpath.lessons.concept_test.concept_test import BEFORE
 from onpath.lessons.concept_test.on_route import last_test
 from onpath.lessons.concept_test.titles import titles_of_tests

@@ -15,7 +15,7 @@ import numpy as np
 
 from onpath.app.channel.messages import JointSymbol
 from onpath.app.lab.snapshots.snapshot import END, Motion
-from onpath.app.scene.label_geometry import Arc, arcs_of, plane_of, within_half
+from onpath.app.view.label_geometry import Arc, arcs_of, plane_of, within_half
 from onpath.lessons.symbols import SYMBOLS
 from onpath.models.arrays import Array
 from onpath.models.systems.robots import Robot

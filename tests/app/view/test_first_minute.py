@@ -13,10 +13,10 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.commands.command_codec import command_from
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
-from onpath.app.page.first_minute import INVITATIONS, PAUSE, READ, FirstMinute
-from onpath.app.page.narration import Narration
-from onpath.app.scene.captions import Captions
 from onpath.app.server.built_in_course import built_in_course
+from onpath.app.view.captions import Captions
+from onpath.app.view.first_minute import INVITATIONS, PAUSE, READ, FirstMinute
+from onpath.app.view.narration import Narration
 from onpath.lessons.words import ENGLISH
 from onpath.models.control.sides import RIGHT, SIDES
 from tests.support.lab import do, loop_cache, new_lab, run

@@ -12,13 +12,13 @@ import msgspec
 
 from onpath.app.channel.messages import LessonMessage, MeasuredMessage
 from onpath.app.common.templates import part_of_page
-from onpath.app.page.lesson_end import end_html, ended_charts
-from onpath.app.page.lesson_html import route_line
-from onpath.app.page.lesson_view import LessonView
-from onpath.app.page.step_navigation import pager_of
-from onpath.app.scene.symbol_geometry import has_meaning
 from onpath.app.steps.block_data import answer_data, block_data, curves_data, script_data
 from onpath.app.steps.step_html import StepPart, part_of, step_html
+from onpath.app.view.lesson_end import end_html, ended_charts
+from onpath.app.view.lesson_view import LessonView
+from onpath.app.view.lessons import route_line
+from onpath.app.view.step_navigation import pager_of
+from onpath.app.view.symbol_geometry import has_meaning
 from onpath.lessons.option_order import LETTERS
 from onpath.lessons.progress import Answer
 from onpath.lessons.schema import (

@@ -4,15 +4,20 @@ from __future__ import annotations
 
 from functools import cache
 
+from onpath.app.channel.file_inbox import MOST_BYTES
 from onpath.app.channel.messages import WordsMessage, encoded
-from onpath.app.exports.path_upload import MOST_BYTES
-from onpath.app.exports.standalone.figure_words import CHART
-from onpath.app.page.first_minute import INVITATIONS
-from onpath.app.page.shell_words import FILLED, SHELL
 from onpath.app.steps.player_words import player_words
+from onpath.app.view.first_minute import INVITATIONS
 from onpath.app.view.forms import form_words
+from onpath.app.view.shell_words import FILLED, SHELL
 from onpath.lessons.words import Words
 
+CHART = (
+    *("chart.title", "chart.held", "chart.pulled", "chart.centre", "chart.table", "chart.time"),
+    *("chart.acts", "chart.look", "chart.look_hint", "chart.yours", "chart.draw"),
+    *("plots.menu", "plots.menu_hint", "plot.phase", "plot.phase_name"),
+)
+"""Messages of the plots, which figures and lessons have."""
 _PLAIN = (
     *CHART,
     *("lens.closest", "lens.reference", "lens.straight"),

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from onpath.app.scene.label_geometry import IN_FRONT, SIDES, axes_of, label_function
+from onpath.app.view.label_geometry import IN_FRONT, SIDES, axes_of, label_function
 from onpath.models.arrays import Array
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.file_chain import Options

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
-from onpath.app.scene.captions import Captions, spoken
+from onpath.app.view.captions import Captions, spoken
 from onpath.lessons.words import ENGLISH
 from onpath.models.systems.catalogue import ROBOTS
 from tests.support.lab import FOLLOWER, TRACKER, do, new_lab, run

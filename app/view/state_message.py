@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
 from onpath.app.channel.messages import Said, StateMessage
 from onpath.app.lab.plot_rows import row_data
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
-from onpath.app.scene.projection import Seen
 from onpath.lessons.labels import robot_label
 from onpath.lessons.sides import displayed_names, law_text, side_titles
 from onpath.lessons.words import Words
@@ -17,18 +17,38 @@ from onpath.models.control.laws.registry import law_named
 from onpath.models.systems.law_parameters import LEVEL_SET
 
 
+@dataclass(frozen=True, slots=True)
+class Projection:
+    """How the picture shows the robots.
+
+    Attributes:
+        height: that the canvas shows at the distance of the robots, [m].
+        cameras: one for each robot, shape (k, 3, p + 1); matrices of the
+            perspective, see `app/scene/projection.py`.
+        drawn: whether the picture does so already.
+        above: the point of the output space that is nearest to a title's place, shape (p,), [m].
+        arrow: length of the arrow of a force [m/N].
+    """
+
+    height: float
+    drawn: bool
+    cameras: np.ndarray
+    above: np.ndarray
+    arrow: float
+
+
 def state_message(
     snapshot: PageSnapshot,
     words: Words,
     captions: Mapping[str, str],
     said: Said,
-    seen: Seen,
+    seen: Projection,
 ) -> StateMessage:
     """The message of a lab's state.
 
     Args:
         words: of the page.
-        captions: of the robots, by side; see `app.scene.captions.Captions`.
+        captions: of the robots, by side; see `app.view.captions.Captions`.
         said: what the page says.
         seen: how the picture shows the robots, or will.
     """
