@@ -173,6 +173,11 @@ def step_view(title: str, remark: str, large: bool = False) -> str:
     return render("class/step.html", title=title, remark=remark, large=large)
 
 
+def remark(text: str) -> str:
+    """A sentence below the answers."""
+    return render("class/remark.html", text=text)
+
+
 def given_line(found: Distribution, words: Words) -> str:
     """How many students have answered, skipped, or not answered, and how many answers are lost."""
     given = sum(found.counts) + len(found.sketches)

@@ -8,9 +8,9 @@ from functools import partial
 from msgspec.structs import replace
 
 from onpath.app.channel.messages import StateMessage, StoredName
+from onpath.app.classroom.teaching.teacher_context import TeacherContext
 from onpath.app.common.work_thread import WorkThread
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
-from onpath.app.page.teacher_context import TeacherContext
 from onpath.app.view.captions import Captions
 from onpath.app.view.first_minute import KEPT_AS, FirstMinute
 from onpath.app.view.lesson_column import LessonColumn

@@ -5,13 +5,13 @@ from __future__ import annotations
 import viser
 from typing_extensions import override
 
+from onpath.app.classroom.teaching.teacher_context import TeacherContext
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.snapshot import Motion
 from onpath.app.page.page import Page
 from onpath.app.page.page_context import PageContext
 from onpath.app.page.panels.widgets import Post
-from onpath.app.page.teacher_context import TeacherContext
 from onpath.app.page.teaching.teacher_controls import FollowedStudent, TeacherControls
 from onpath.app.page.teaching.teacher_panel import TeacherPanel
 from onpath.lessons.words import Words

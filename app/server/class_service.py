@@ -8,11 +8,11 @@ from functools import partial
 from onpath.app.classroom.class_keeper import ClassKeeper
 from onpath.app.classroom.class_sync import ClassSync
 from onpath.app.classroom.classroom import Classroom
+from onpath.app.classroom.teaching.teacher_context import TeacherChoices, TeacherContext
 from onpath.app.lab.commands import CloseLesson, ReportState, TakeSetup
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.setups.capture import capture
 from onpath.app.page.page_context import ClassSeat
-from onpath.app.page.teacher_context import TeacherChoices, TeacherContext
 from onpath.app.server.followed_lab import FollowedLab
 from onpath.app.server.lab_registry import LabRegistry
 from onpath.app.server.site_address import is_local

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from onpath.app.classroom.classroom import Classroom
-from onpath.app.page.teacher_context import TeacherChoices
+from onpath.app.classroom.teaching.teacher_context import TeacherChoices
 from onpath.app.simulation.scheduled_lab import ScheduledLab
 from onpath.lessons.words import Words
 

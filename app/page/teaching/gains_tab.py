@@ -5,8 +5,8 @@ from __future__ import annotations
 import viser
 
 from onpath.app.classroom.gains_html import PAIRS, gains_view
+from onpath.app.classroom.teaching.teacher_context import TeacherContext
 from onpath.app.page.panels.widgets import add_menu, put
-from onpath.app.page.teacher_context import TeacherContext
 from onpath.lessons.words import Words
 
 

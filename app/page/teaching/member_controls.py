@@ -6,9 +6,9 @@ from collections.abc import Callable
 
 import viser
 
+from onpath.app.classroom.teaching.teacher_context import TeacherContext
 from onpath.app.common.templates import render
 from onpath.app.page.panels.widgets import note, on_press, put
-from onpath.app.page.teacher_context import TeacherContext
 from onpath.lessons.words import Words
 
 

@@ -6,9 +6,9 @@ import viser
 
 from onpath.app.classroom.classroom import Classroom
 from onpath.app.classroom.pace_html import pace_view
+from onpath.app.classroom.teaching.lesson_labels import lesson_titles, step_titles
+from onpath.app.classroom.teaching.steps_for_all import StepsForAll
 from onpath.app.page.panels.widgets import note, on_press, on_user_update, put
-from onpath.app.page.teaching.lesson_menu_labels import lesson_titles, step_titles
-from onpath.app.page.teaching.steps_for_all import StepsForAll
 from onpath.lessons.course import Course
 from onpath.lessons.pace import Pace
 from onpath.lessons.words import Words

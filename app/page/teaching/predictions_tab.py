@@ -14,15 +14,15 @@ import viser
 
 from onpath.app.classroom.classroom import Display
 from onpath.app.classroom.results import prediction_at
+from onpath.app.classroom.teaching.class_answers import ClassAnswers
+from onpath.app.classroom.teaching.lesson_labels import lesson_titles, step_label, step_titles
+from onpath.app.classroom.teaching.steps_for_all import StepsForAll
+from onpath.app.classroom.teaching.teacher_context import TeacherContext
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
 from onpath.app.page.panels.widgets import Post, note, on_press, on_user_update, put
-from onpath.app.page.teacher_context import TeacherContext
-from onpath.app.page.teaching.class_answers import ClassAnswers
-from onpath.app.page.teaching.lesson_menu_labels import lesson_titles, step_label, step_titles
 from onpath.app.page.teaching.route_sender import RouteSender
 from onpath.app.page.teaching.sketch_choice import SketchChoice
-from onpath.app.page.teaching.steps_for_all import StepsForAll
 from onpath.lessons.course import Course
 from onpath.lessons.words import Words
 

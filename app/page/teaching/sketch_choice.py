@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 
 import viser
 
-from onpath.app.classroom.classroom import MOST_MEMBERS
+from onpath.app.classroom.teaching.class_answers import picked
+from onpath.app.classroom.teaching.teacher_context import TeacherChoices
 from onpath.app.page.panels.widgets import on_user_update
-from onpath.app.page.teacher_context import TeacherChoices
 from onpath.lessons.words import Words
 
 
@@ -37,9 +36,3 @@ class SketchChoice:
     def _choose(self, typed: str) -> None:
         self._chosen.picked = picked(typed)
         self._look_again()
-
-
-def picked(typed: str) -> tuple[int, ...]:
-    """The numbers in a text, each once; everything else in it is ignored."""
-    found = (int(number) for number in re.findall(r"(?a:\d{1,4})", typed[:200]))
-    return tuple(dict.fromkeys(number for number in found if 0 < number <= MOST_MEMBERS))

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import viser
 
+from onpath.app.classroom.teaching.teacher_context import TeacherContext
 from onpath.app.common.templates import render
 from onpath.app.lab.commands import TakeSetup
 from onpath.app.lab.setups.share_code import decode
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.panels.slow_presses import on_slow_press
 from onpath.app.page.panels.widgets import note, on_press, put
-from onpath.app.page.teacher_context import TeacherContext
 from onpath.lessons.words import Words
 
 

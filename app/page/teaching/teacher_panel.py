@@ -11,14 +11,14 @@ import viser
 from onpath.app.classroom import class_html as page
 from onpath.app.classroom.class_record import class_record
 from onpath.app.classroom.concept_test_results import sheets_without_names
+from onpath.app.classroom.teaching.lesson_labels import lesson_titles
+from onpath.app.classroom.teaching.teacher_context import TeacherContext
 from onpath.app.common.background import Submit
 from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.panels.dialog import mark_closing
 from onpath.app.page.panels.widgets import Post, note, on_press, on_user_update, put
-from onpath.app.page.teacher_context import TeacherContext
 from onpath.app.page.teaching.gains_tab import GainsTab
-from onpath.app.page.teaching.lesson_menu_labels import lesson_titles
 from onpath.app.page.teaching.member_controls import MemberControls
 from onpath.app.page.teaching.pace_tab import PaceTab
 from onpath.app.page.teaching.predictions_tab import PredictionsTab

@@ -15,10 +15,10 @@ from onpath.app.classroom.class_state import from_stored, to_stored
 from onpath.app.classroom.classroom import NOTHING_DONE, Classroom, ClassState, Display
 from onpath.app.classroom.concept_test_results import question_at
 from onpath.app.classroom.results import prediction_at
+from onpath.app.classroom.teaching.class_answers import ClassAnswers
+from onpath.app.classroom.teaching.teacher_context import TeacherChoices
 from onpath.app.lab.commands import TakeSetup, TakeStep
 from onpath.app.lab.setups.setup import Setup
-from onpath.app.page.teacher_context import TeacherChoices
-from onpath.app.page.teaching.class_answers import ClassAnswers
 from onpath.app.server.built_in_course import built_in_course
 from onpath.lessons.concept_test.concept_test import TESTS
 from onpath.lessons.progress import Progress

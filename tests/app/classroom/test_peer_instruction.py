@@ -16,12 +16,12 @@ from onpath.app.classroom.class_state import push_data, read_push
 from onpath.app.classroom.class_sync import ClassSync
 from onpath.app.classroom.classroom import Classroom, Member
 from onpath.app.classroom.results import distribution
+from onpath.app.classroom.teaching.class_answers import ClassAnswers
+from onpath.app.classroom.teaching.teacher_context import TeacherChoices
 from onpath.app.exports.report import report
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.lab import Lab
-from onpath.app.page.teacher_context import TeacherChoices
-from onpath.app.page.teaching.class_answers import ClassAnswers
 from onpath.lessons.course import Course, read_course
 from onpath.lessons.progress import Answer, Progress, read_progress
 from onpath.lessons.words import ENGLISH

@@ -14,12 +14,11 @@ from onpath.app.classroom.class_sync import GAINS, ClassSync
 from onpath.app.classroom.classroom import Classroom, Display
 from onpath.app.classroom.gains_html import HEIGHT, PAIRS, WIDTH, gains_view
 from onpath.app.classroom.pace_html import pace_view, whereabouts
+from onpath.app.classroom.teaching.class_answers import ClassAnswers, picked
+from onpath.app.classroom.teaching.teacher_context import TeacherChoices
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.lab import Lab
-from onpath.app.page.teacher_context import TeacherChoices
-from onpath.app.page.teaching.class_answers import ClassAnswers
-from onpath.app.page.teaching.sketch_choice import picked
 from onpath.lessons.course import Course, read_course
 from onpath.lessons.pace import Pace
 from onpath.lessons.progress import Notes, Progress

@@ -10,12 +10,12 @@ from hypothesis import strategies as st
 from msgspec import structs
 
 from onpath.app.classroom.classroom import Classroom, Display
+from onpath.app.classroom.teaching.lesson_labels import step_label
+from onpath.app.classroom.teaching.steps_for_all import StepsForAll
 from onpath.app.lab.commands import ChoosePath, CloseLesson, Set, TakeSetup, TakeStep
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.setups.capture import capture
 from onpath.app.lab.setups.setup import Setup
-from onpath.app.page.teaching.lesson_menu_labels import step_label
-from onpath.app.page.teaching.steps_for_all import StepsForAll
 from onpath.app.server.built_in_course import built_in_course
 from onpath.lessons.course import Course
 from onpath.lessons.words import ENGLISH

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
+
 from onpath.app.classroom import class_html as page
-from onpath.app.classroom.classroom import Display
+from onpath.app.classroom.classroom import MOST_MEMBERS, Display
 from onpath.app.classroom.concept_test_results import gain_view, item_distribution, question_at
 from onpath.app.classroom.results import (
     Distribution,
@@ -13,11 +15,10 @@ from onpath.app.classroom.results import (
     truth_of,
 )
 from onpath.app.classroom.sketches_html import Picks
+from onpath.app.classroom.teaching.lesson_labels import step_label
+from onpath.app.classroom.teaching.steps_for_all import StepsForAll
+from onpath.app.classroom.teaching.teacher_context import TeacherContext
 from onpath.app.lab.dry_runs.step_truth import computed_truth
-from onpath.app.page.panels.widgets import note
-from onpath.app.page.teacher_context import TeacherContext
-from onpath.app.page.teaching.lesson_menu_labels import step_label
-from onpath.app.page.teaching.steps_for_all import StepsForAll
 from onpath.lessons.concept_test.concept_test import TESTS
 from onpath.lessons.course import Course
 from onpath.lessons.kept.known_choices import of_today
@@ -83,7 +84,7 @@ class ClassAnswers:
             block, counted, truth, revealed, words, large, laws=laws, second=second, picks=picks
         )
         missing = revealed and not counted.counts and truth is None
-        return view + note(words("class.no_truth")) if missing else view
+        return view + page.remark(words("class.no_truth")) if missing else view
 
     def _picks(
         self, lesson: str, at: int, counted: Distribution, second: Distribution | None
@@ -104,3 +105,9 @@ class ClassAnswers:
         if key not in self._computed:
             self._computed[key] = computed_truth(lesson, at)
         return self._computed[key]
+
+
+def picked(typed: str) -> tuple[int, ...]:
+    """The numbers in a text, each once; everything else in it is ignored."""
+    found = (int(number) for number in re.findall(r"(?a:\d{1,4})", typed[:200]))
+    return tuple(dict.fromkeys(number for number in found if 0 < number <= MOST_MEMBERS))
