@@ -1,4 +1,4 @@
-"""A simulated browser that stores its codes, reads its page and reconnects after a failure."""
+"""A page without a browser: it stores its codes, sets what its form has, and connects again."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from html import unescape
+from itertools import count
 from types import TracebackType
 from typing import Any, Self
 from urllib.parse import urlsplit
@@ -18,6 +19,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Subprotocol
 
+from onpath.app.channel.messages import AskForm, encoded
 from onpath.app.server.arrivals import PAGE_KEY
 from onpath.app.viser_adapter.addresses import prefix_of, storage_key
 from onpath.app.viser_adapter.data_channel import SUBPROTOCOL as DATA
@@ -27,6 +29,7 @@ from tests.bench.simulated_browser import MOVING, SEES
 MOST_CODES = 8
 PATIENCE = 60.0  # [s]; only ends a test that would hang
 KEPT = ("teacher", "speaks", "sounds", "first_minute")
+NEWS = 0.05  # [s] for which the page's own websocket is read before viser's
 
 
 def remembered(code: str, known: str) -> str:
@@ -41,28 +44,30 @@ class Student:
     Args:
         address: URL of the websocket.
         through: port on this machine to connect to, instead of that in the address.
+        scene: whether viser's websocket is opened, too, for the robots' picture.
         headers: headers of the handshake.
 
     Attributes:
         kept: the browser's local storage.
-        widgets: properties of the widgets on the page, by id.
-        moving: number of updates of the poses.
+        page: the number of the page.
+        told: the last message of each kind from the page's own websocket; of those that tell
+            changes, everything that has been told.
+        moving: number of updates of the poses in the picture.
         received: amount of data, [B].
-        lesson: the last message of the data channel about the lessons; see `lesson_message`.
-        message: what the lab tells its user, from that channel.
         draws: whether the tab is in front.
     """
 
-    def __init__(self, address: str, through: int | None = None, **headers: str) -> None:
+    def __init__(
+        self, address: str, through: int | None = None, *, scene: bool = True, **headers: str
+    ) -> None:
         self.address, self.headers = address, headers
         self._through, self.moving, self.received = through, 0, 0
         self.kept: dict[str, str] = {}
-        self.widgets: dict[str, dict[str, Any]] = {}
-        self._socket: ClientConnection | None = None
-        self.draws, self._page, self._saw = True, "", 0.0
+        self.draws, self.page, self._saw = True, "", 0.0
+        self.told: dict[str, dict[str, Any]] = {}
+        self._has_scene, self._numbers = scene, count(1)
         self._data: ClientConnection | None = None
-        self.lesson: dict[str, Any] = {}
-        self.message = ""
+        self._scene: ClientConnection | None = None
 
     def __enter__(self) -> Self:
         return self
@@ -72,9 +77,15 @@ class Student:
 
     def close(self) -> None:
         """Close the tab."""
-        for each in (self._socket, self._data):
+        for each in (self._scene, self._data):
             if each is not None:
                 each.close()
+
+    def listen_no_more(self) -> None:
+        """Close the page's own websocket alone."""
+        assert self._data is not None
+        self._data.close()
+        self._data = None
 
     @property
     def code(self) -> str:
@@ -88,13 +99,14 @@ class Student:
 
     def open(self) -> None:
         """Open the page, or open it again."""
-        self.widgets.clear()
-        self.lesson, self.message, self._page = {}, "", secrets.token_hex(16)
+        self.told.clear()
+        self.page = secrets.token_hex(16)
         self._data = self._connected(DATA)
         kept = {key: self.kept.get(f"onpath_{key}", "") for key in KEPT}
-        self._data.send(hello(self._page, labs=self.kept.get(self._labs, ""), **kept))
-        self._socket = self._connected(SUBPROTOCOL)
-        self._socket.send(packed("ViewerCameraMessage", **CAMERA))
+        self._data.send(hello(self.page, labs=self.kept.get(self._labs, ""), **kept))
+        if self._has_scene:
+            self._scene = self._connected(SUBPROTOCOL)
+            self._scene.send(packed("ViewerCameraMessage", **CAMERA))
 
     def _connected(self, subprotocol: str) -> ClientConnection:
         way = self._through
@@ -109,7 +121,7 @@ class Student:
         )
 
     def reopen(self) -> None:
-        """Reconnect as viser's page does: retry until it succeeds."""
+        """Connect again as the page does: try until it succeeds."""
         end = time.monotonic() + PATIENCE
         while True:
             try:
@@ -119,163 +131,176 @@ class Student:
                     raise
                 time.sleep(0.2)
 
+    # What comes
+
     def read(self, until: Callable[[], Any]) -> None:
         """Read messages until a condition holds."""
         end = time.monotonic() + PATIENCE
         while not until():
-            assert time.monotonic() < end, sorted(map(str, self._labels()))
-            assert self._socket is not None
-            try:
-                raw = self._socket.recv(timeout=0.2)
-            except TimeoutError:
-                self._hear()
-                continue
-            self._take_frame(raw)
-            self._hear()
+            assert time.monotonic() < end, self.values.keys() | self.buttons.keys()
+            self._hear(NEWS)
 
     def read_what_was_sent(self) -> None:
         """Read what the server had sent when it heard of this."""
-        assert self._socket is not None
-        assert self._socket.ping().wait(PATIENCE)
+        for each in (self._data, self._scene):
+            assert each is None or each.ping().wait(PATIENCE)
         self.read_what_has_come()
 
     def read_what_has_come(self) -> None:
         """Read what has arrived so far, without waiting."""
-        assert self._socket is not None
-        with suppress(TimeoutError):
-            while True:
-                self._take_frame(self._socket.recv(timeout=0))
-        self._hear()
+        self._hear(0.0)
 
     def wait_until_closed(self) -> None:
-        """Wait until the server has closed the connection."""
+        """Wait until the server has closed a connection."""
         try:
             self.read(lambda: False)
         except ConnectionClosed:
             return
 
-    def find(self, label: str) -> dict[str, Any]:
-        """Wait for a widget whose label or option begins with `label`; the shortest is meant."""
-        self.read(lambda: self.has_widget(label))
-        labels = self._labels()
-        return labels[min((text for text in labels if text.startswith(label)), key=len)]
+    @property
+    def values(self) -> dict[str, Any]:
+        """The values of the fields, by name; empty until the page has its form."""
+        return self.told.get("values", {}).get("values", {})
 
-    def set(self, label: str, value: Any) -> None:
-        """Set the value of a widget, as by moving a slider or pressing a button."""
-        self.read(lambda: self.has_widget(label))
-        if commands := self._commands(label):
-            return self.tell(*commands)
-        widget = self.find(label)
-        self.send("GuiUpdateMessage", uuid=widget["uuid"], updates={"value": value})
+    @property
+    def state(self) -> dict[str, Any]:
+        """What the page is told of its lab; see `StateMessage`."""
+        return self.told.get("state", {})
 
-    def choose(self, option: str) -> None:
-        """Wait for exactly this option, and choose it."""
-        self.read(lambda: option in self._labels())
-        self.set(option, option)
+    @property
+    def lesson(self) -> dict[str, Any]:
+        """What the page is told of the lessons; see `LessonMessage`."""
+        return self.told.get("lesson", {})
 
-    def press(self, hotkey: str) -> None:
-        """Press a key of the lab's, as viser's page tells it."""
-        key = next(w for w in self.widgets.values() if w.get("hotkey") == hotkey)
-        self.send("CommandTriggerMessage", uuid=key["uuid"])
-
-    def send(self, kind: str, **fields: Any) -> None:
-        """Any message."""
-        assert self._socket is not None
-        self._socket.send(packed(kind, **fields))
-
-    def tell(self, *commands: dict[str, Any]) -> None:
-        """Send commands through the data channel."""
-        assert self._data is not None
-        for command in commands:
-            self._data.send(json.dumps(command))
-
-    def has_widget(self, label: str) -> bool:
-        """Whether the page has a widget whose label or option begins with `label`."""
-        return bool(self._commands(label)) or any(text.startswith(label) for text in self._labels())
-
-    def count(self, label: str) -> int:
-        """Number of widgets with this label."""
-        return sum(widget.get("label") == label for widget in self.widgets.values())
-
-    def sees(self, text: str) -> bool:
-        """Whether the page shows a text."""
-        parts = ("content", "_markdown")
-        return (
-            text in self.column
-            or text in self.message
-            or any(text in str(w.get(part)) for w in self.widgets.values() for part in parts)
-        )
+    @property
+    def fields(self) -> dict[str, dict[str, Any]]:
+        """The fields of the form of the lab, by name."""
+        groups = self.told.get("form lab", {}).get("groups", ())
+        return {field["name"]: field for group in groups for field in group["fields"]}
 
     @property
     def column(self) -> str:
         """The HTML of the open step of a lesson, or of its end; empty without one."""
-        if not self.lesson.get("lesson"):
+        lesson = self.lesson
+        if not lesson.get("lesson"):
             return ""
-        at = "end" if self.lesson["ended"] else str(self.lesson["index"])
-        return (
-            "".join(self.lesson[part] for part in ("head", "pager")) + self.lesson["sections"][at]
-        )
+        at = "end" if lesson["ended"] else str(lesson["index"])
+        return "".join(lesson[part] for part in ("head", "pager")) + lesson["sections"][at]
 
-    def _commands(self, label: str) -> list[dict[str, Any]]:
-        """What the shortest button of the column sends whose name begins with a label."""
-        found = dict[str, str]()
+    @property
+    def buttons(self) -> dict[str, Any]:
+        """What each button of the open step sends, by its name."""
+        found = dict[str, Any]()
         for attributes, text in re.findall(r"<button([^>]*)>([^<]*)</button>", self.column):
             sent = re.search("data-send='([^']*)'", attributes)
             name = re.search('aria-label="([^"]*)"', attributes)
-            if sent is not None and (named := unescape(name[1] if name else text)).startswith(
-                label
-            ):
-                found[named] = unescape(sent[1])
-        if not found:
-            return []
-        commands = json.loads(found[min(found, key=len)])
-        return commands if isinstance(commands, list) else [commands]
+            if sent is not None:
+                found[unescape(name[1] if name else text)] = json.loads(unescape(sent[1]))
+        return found
 
-    def _hear(self) -> None:
-        """Take what the page's own websocket tells, and tell that the page is drawn."""
+    def has_button(self, label: str) -> bool:
+        """Whether the open step has a button whose name begins so."""
+        return any(name.startswith(label) for name in self.buttons)
+
+    def sees(self, text: str) -> bool:
+        """Whether the page shows a text: in the open step, or as a message of the lab."""
+        return text in self.column or text in self.state.get("message", "")
+
+    # What the student does
+
+    def value(self, name: str) -> Any:
+        """The value of a field, as soon as there is one."""
+        self.read(lambda: name in self.values)
+        return self.values[name]
+
+    def set(self, name: str, value: Any) -> int:
+        """Set a field, as soon as it is there; returns the number of the message."""
+        self.value(name)
+        number = next(self._numbers)
+        self.tell({"is": "set", "name": name, "value": value, "number": number})
+        return number
+
+    def settle(self, name: str, value: Any) -> None:
+        """Set a field, and return when this counts: so does whatever was sent before."""
+        number = self.set(name, value)
+        self.read(lambda: self.told["values"]["heard"].get(name, 0) >= number)
+
+    def press(self, label: str) -> None:
+        """Press the button of the open step whose name begins so; the shortest is meant."""
+        self.read(lambda: self.has_button(label))
+        sent = self.buttons[min((n for n in self.buttons if n.startswith(label)), key=len)]
+        self.tell(*(sent if isinstance(sent, list) else [sent]))
+
+    def ask(self, what: str) -> dict[str, Any]:
+        """Open a sheet: the message with what it shows."""
+        self.read(lambda: self.values)
+        self.told.pop(what, None)
+        self.tell({"is": "ask", "what": what})
+        self.read(lambda: what in self.told)
+        return self.told[what]
+
+    def tell(self, *messages: dict[str, Any]) -> None:
+        """Send messages or commands through the page's own websocket."""
         assert self._data is not None
-        with suppress(TimeoutError, ConnectionClosed):
-            if self.draws and time.monotonic() > self._saw + SEES:
+        for message in messages:
+            self._data.send(json.dumps(message))
+
+    def send(self, kind: str, **fields: Any) -> None:
+        """Send any message through viser's websocket."""
+        assert self._scene is not None
+        self._scene.send(packed(kind, **fields))
+
+    # Both websockets
+
+    def _hear(self, patience: float) -> None:
+        """Read what both websockets have, and tell that the page is drawn.
+
+        Args:
+            patience: for the first message of the page's own one, [s].
+        """
+        with suppress(TimeoutError):
+            if self._data is not None and self.draws and time.monotonic() > self._saw + SEES:
                 self._saw = time.monotonic()
                 self._data.send(SEEN)
-            while True:
-                raw = self._data.recv(timeout=0)
+            while self._data is not None:
+                raw = self._data.recv(timeout=patience)
                 self.received += len(raw)
                 self._take_message(json.loads(raw))
+                patience = 0.0
+        with suppress(TimeoutError):
+            while self._scene is not None:
+                self._take_frame(self._scene.recv(timeout=0))
 
     def _take_message(self, message: dict[str, Any]) -> None:
+        kind, told = message["is"], self.told
         match message:
             case {"is": "lab", "code": code}:
                 known = self.kept.get(self._labs, "")
                 self.kept[self._labs] = remembered(code, known)
+                told.pop("values", None)  # those of another lab, perhaps
+                assert self._data is not None
+                self._data.send(encoded(AskForm()).decode())
             case {"is": "store", "key": key, "value": value}:
                 self.kept[f"onpath_{key}"] = value
-            case {"is": "lesson"}:
-                self.lesson = message
+            case {"is": "form", "place": place}:
+                told[f"form {place}"] = message
             case {"is": "state"}:
-                self.message = message.get("message", self.message)
-
-    def _labels(self) -> dict[str, dict[str, Any]]:
-        shown = [w for w in self.widgets.values() if w["value"] is not None]
-        options = {option: w for w in shown for option in w.get("options") or ()}
-        return {**options, **{str(w["label"]): w for w in shown if w.get("label")}}
+                message = {**self.state, **message}
+            case {"is": "values"}:
+                before = told.get("values", {})
+                parts = ("values", "refused", "heard")
+                news = {part: {**before.get(part, {}), **message.get(part, {})} for part in parts}
+                message = {**message, **news}
+        told[kind] = message
 
     def _take_frame(self, raw: str | bytes) -> None:
-        assert isinstance(raw, bytes)
+        assert isinstance(raw, bytes) and self._scene is not None
         self.received += len(raw)
         for message in unpacked(raw):
-            self._take(message)
+            self.moving += message.get("name") == MOVING
+            if reply := answer(message, {PAGE_KEY: self.page}):
+                self._scene.send(reply)
+            self.hear_scene(message)
 
-    def _take(self, message: dict[str, Any]) -> None:
-        kind = message["type"]
-        self.moving += message.get("name") == MOVING
-        if reply := answer(message, {PAGE_KEY: self._page}):
-            assert self._socket is not None
-            self._socket.send(reply)
-        elif "props" in message and "uuid" in message:
-            widget = {"uuid": message["uuid"], "value": message.get("value")}
-            self.widgets[message["uuid"]] = {**widget, **message["props"]}
-        elif kind in ("GuiUpdateMessage", "CommandUpdateMessage"):
-            self.widgets.get(message["uuid"], {}).update(message["updates"])
-        elif kind in ("GuiRemoveMessage", "RemoveCommandMessage"):
-            self.widgets.pop(message["uuid"], None)
+    def hear_scene(self, message: dict[str, Any]) -> None:
+        """Called with each message about the picture."""

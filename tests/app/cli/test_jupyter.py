@@ -81,9 +81,7 @@ def test_a_lab_runs_under_jupyters_sub_path(port: int, folder: Path) -> None:
     }
     with Student(f"ws://127.0.0.1:{port}/onpath/", None, **headers) as student:
         student.open()
-        student.read(lambda: student.sees("poles -26"))
-        student.set("K2", 44.0)
-        student.read(lambda: not student.sees("poles -26") and student.code)
+        student.settle("K2", 44.0)
         student.read(lambda: student.moving > 10)
     assert not stranger.marks(folder)
 
@@ -94,7 +92,7 @@ def test_strangers_stay_outside(port: int) -> None:
         stranger = Student(address, Origin=origin, Authorization=f"token {token}")
         with stranger, pytest.raises((InvalidStatus, ConnectionClosed)):
             stranger.open()
-            stranger.read(lambda: stranger.widgets)
+            stranger.read(lambda: stranger.told)
     assert get(port, "/onpath/", "wrong").status in (302, 403)
 
 

@@ -47,7 +47,7 @@ def client() -> Iterator[viser.ClientHandle]:
     server = LabServer("127.0.0.1", 0, LoopCache())
     with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
         student.open()
-        student.read(lambda: student.has_widget("Path") and feeds(server))
+        student.read(lambda: student.moving)
         server.thread.stop()
         (number,) = wait_for(lambda: list(feeds(server)))
         yield server.server.get_clients()[number]

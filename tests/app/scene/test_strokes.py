@@ -93,7 +93,7 @@ def page() -> Iterator[Page]:
     lab = LabServer("127.0.0.1", 0, LoopCache())
     with Student(f"ws://127.0.0.1:{lab.server.get_port()}") as student:
         student.open()
-        student.read(lambda: student.has_widget("Path") and feeds(lab))
+        student.read(lambda: student.moving)
         yield Page(lab)
     lab.stop()
 

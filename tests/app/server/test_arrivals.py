@@ -56,15 +56,14 @@ def test_silent_tabs_hold_no_thread_no_lab_and_no_place(lab: LabServer) -> None:
     with ExitStack() as stay:
         insider = stay.enter_context(Student(address))
         insider.open()
-        insider.read(lambda: insider.has_widget("Path"))
+        insider.read(lambda: insider.moving)
         tabs = [stay.enter_context(silent(lab.server)) for _ in range(SILENT)]
         wait_for(lambda: [is_closed(tab) for tab in tabs].count(True) == SILENT - MOST_EACH)
         assert all_threads_are_free(lab.server)
         newcomer = stay.enter_context(Student(address))
         newcomer.open()
-        newcomer.read(lambda: newcomer.has_widget("Path"))
-        insider.set("Lessons", True)
-        insider.read(lambda: insider.has_widget("Open lesson 1"))
+        newcomer.read(lambda: newcomer.moving)
+        assert insider.ask("lessons")["lessons"]
         wait_for(lambda: len(feeds(lab)) == 2)
         assert len(lab.registry) == 2
         assert [is_closed(tab) for tab in tabs] == [True] * MOST_EACH + [False] * MOST_EACH
@@ -73,14 +72,14 @@ def test_silent_tabs_hold_no_thread_no_lab_and_no_place(lab: LabServer) -> None:
 def test_a_late_answer_returns_to_the_same_lab(lab: LabServer) -> None:
     with Student(f"ws://127.0.0.1:{lab.server.get_port()}") as student:
         student.open()
-        student.read(lambda: student.code and student.has_widget("Path"))
+        student.read(lambda: student.code and student.moving)
         code = student.code
         student.close()
         wait_for(lambda: not lab.server.get_clients())
         student.open()  # and reads no question yet
         wait_for(lab.server.get_clients)
         assert all_threads_are_free(lab.server)
-        student.read(lambda: student.has_widget("Path"))
+        student.read(lambda: student.moving)
         assert student.code == code and len(lab.registry) == 1
 
 
@@ -89,7 +88,7 @@ def test_a_browser_that_opens_a_lab_by_its_code_remembers_its_own_too(lab: LabSe
     with Student(address) as one, Student(address) as other:
         for student in (one, other):
             student.open()
-            student.read(lambda student=student: student.code and student.has_widget("Path"))
+            student.read(lambda student=student: student.code and student.moving)
         codes = [other.code, one.code]
         other.close()
         wait_for(lambda: len(lab.visits) == 1 and len(lab.registry.held()) == 1)  # it is free

@@ -19,9 +19,10 @@ from onpath.app.storage.database_url import DATABASE
 from onpath.app.storage.leases import LEASE
 from onpath.app.storage.records import Records
 from onpath.app.storage.schema import classes
+from tests.support.class_tab import ClassTab
 from tests.support.lab_process import LabProcess, free_ports
 from tests.support.site_class import CODES, KEYS
-from tests.support.student import PATIENCE, Student
+from tests.support.student import PATIENCE
 from tests.support.waiting import wait_for
 
 pytestmark = pytest.mark.thorough
@@ -47,11 +48,11 @@ def two(url: str) -> Iterator[list[LabProcess]]:
         process.kill()
 
 
-def at(process: LabProcess, path: str) -> Student:
-    return Student(f"ws://127.0.0.1:{process.port}{path}")
+def at(process: LabProcess, path: str) -> ClassTab:
+    return ClassTab(f"ws://127.0.0.1:{process.port}{path}")
 
 
-def move(students: list[Student], there: LabProcess) -> None:
+def move(students: list[ClassTab], there: LabProcess) -> None:
     """Their connections are closed, and they connect to another process, as through a proxy."""
     codes = [student.code for student in students]
     for student in students:
@@ -60,20 +61,19 @@ def move(students: list[Student], there: LabProcess) -> None:
     for student in students:
         student.reopen()
     for student, code in zip(students, codes, strict=True):
-        student.read(lambda student=student: student.sees("You are in the class as"))
+        student.read(lambda student=student: student.is_member)
         assert student.code == code
 
 
-def join(process: LabProcess, name: str) -> Student:
+def join(process: LabProcess, name: str) -> ClassTab:
     student = at(process, f"/c/{CODE}")
     student.reopen()
-    student.set("Nickname", name)
-    student.set("Join the class", True)
-    student.read(lambda: student.sees("You are in the class as"))
+    student.join(name)
+    student.read(lambda: student.is_member)
     return student
 
 
-def wait_until_stored(url: str, student: Student) -> None:
+def wait_until_stored(url: str, student: ClassTab) -> None:
     """Wait until a member and the member's lab would outlive the process."""
     records = Records(url)
     room = class_id_of(KEYS[0])

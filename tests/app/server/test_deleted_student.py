@@ -14,7 +14,7 @@ from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
 from onpath.app.server.server_options import ServerOptions
 from onpath.app.storage.records import Records, file_url
-from tests.support.student import Student
+from tests.support.class_tab import ClassTab
 from tests.support.waiting import wait_for
 
 KEYS = ["k7mf2xqa9tzr", "bn4ws8cd3vyp"]
@@ -36,24 +36,22 @@ def server(file: Path) -> Iterator[LabServer]:
     made.stop()
 
 
-def come(server: LabServer, index: int, name: str) -> Student:
+def come(server: LabServer, index: int, name: str) -> ClassTab:
     """A student of a class, with a lab that is stored."""
     code = open_classes(KEYS)[index].code
-    student = Student(f"ws://127.0.0.1:{server.server.get_port()}/c/{code}")
+    student = ClassTab(f"ws://127.0.0.1:{server.server.get_port()}/c/{code}")
     student.open()
-    student.set("Nickname", name)
-    student.set("Join the class", True)
-    student.read(lambda: student.sees("You are in the class as"))
+    student.join(name)
+    student.read(lambda: student.is_member)
     student.set("K2", MARK)
     return student
 
 
-def teach(server: LabServer) -> Student:
+def teach(server: LabServer) -> ClassTab:
     code = open_classes(KEYS)[0].code
-    teacher = Student(f"ws://127.0.0.1:{server.server.get_port()}/c/{code}")
+    teacher = ClassTab(f"ws://127.0.0.1:{server.server.get_port()}/c/{code}")
     teacher.open()
-    teacher.set("Teacher's key", shown(KEYS[0]))
-    teacher.set("Open the teacher's page", True)
+    teacher.teach(shown(KEYS[0]))
     return teacher
 
 
@@ -68,7 +66,7 @@ def stored(file: Path) -> str:
     return found
 
 
-def gone(student: Student) -> bool:
+def gone(student: ClassTab) -> bool:
     """Whether the server has closed the connection."""
     try:
         student.read_what_has_come()
@@ -94,11 +92,11 @@ def test_a_teacher_deletes_one_student_and_then_the_own_class_and_nobody_else(
 
     until(lambda: all(stored(file).count(each.code) > 1 for each in everybody))
     until(lambda: "Ada" in stored(file) and "Bobby" in stored(file))
-    teacher.set("Follow", teacher.find("1. Ada")["options"][1])
+    teacher.change("Follow", teacher.find("1. Ada")["options"][1])
     until(lambda: teacher.sees("This is the lab of"))  # the page has been rebuilt
-    teacher.set("Delete this student", True)
+    teacher.change("Delete this student")
     until(lambda: teacher.sees("Delete Ada from the class"))
-    teacher.set("Yes", True)
+    teacher.change("Yes")
     until(lambda: teacher.sees("Deleted."))
     until(lambda: not teacher.sees("This is the lab of") and teacher.has_widget("Send my set-up"))
     until(lambda: gone(ada))
@@ -107,11 +105,11 @@ def test_a_teacher_deletes_one_student_and_then_the_own_class_and_nobody_else(
     assert "Bobby" in left and bob.code in left and eve.code in left
     before = ada.code
     ada.reopen()
-    ada.read(lambda: ada.has_widget("Nickname") and ada.code != before)
+    ada.read(lambda: ada.asks_for_a_name and ada.code != before)
     ada.close()
-    teacher.set("Delete the class and its labs", True)
+    teacher.change("Delete the class and its labs")
     until(lambda: teacher.sees("Delete the labs of all students of this class"))
-    teacher.set("Yes", True)
+    teacher.change("Yes")
 
     def bob_is_gone() -> bool:
         teacher.read_what_has_come()
@@ -127,7 +125,7 @@ def test_a_teacher_deletes_one_student_and_then_the_own_class_and_nobody_else(
 
 
 def test_who_is_asked_for_a_nickname_is_told_what_is_stored(server: LabServer) -> None:
-    student = Student(f"ws://127.0.0.1:{server.server.get_port()}/c/{open_classes(KEYS)[0].code}")
+    student = ClassTab(f"ws://127.0.0.1:{server.server.get_port()}/c/{open_classes(KEYS)[0].code}")
     student.open()
     student.read(lambda: student.sees("predictions and drawn curves"))
     student.read(lambda: student.sees("after 365 days without use"))

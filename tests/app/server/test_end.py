@@ -53,9 +53,7 @@ def test_however_often_it_is_told_to_end_the_last_change_is_stored(
 ) -> None:
     with Student(f"ws://127.0.0.1:{served.port}") as student:
         student.open()
-        student.read(lambda: student.sees("poles -26") and student.code)
-        student.set("K2", 44.0)
-        student.read(lambda: not student.sees("poles -26"))  # it has come
+        student.settle("K2", 44.0)
         wait_for(lambda: has_ended(served, end), WAIT)
     assert served.exit_code() == 0
     records = Records(f"sqlite:///{tmp_path / 'labs.db'}")
@@ -71,7 +69,7 @@ def test_a_file_that_is_being_made_is_given_up_without_a_complaint(
     with Student(f"ws://127.0.0.1:{served.port}") as student:
         student.open()
         student.read(lambda: student.moving > 10)
-        student.set("Picture of the plots", True)
+        student.tell({"is": "make", "file": "picture"})
         wait_for(lambda: workers(served), WAIT)
         served.process.send_signal(end)
         assert served.exit_code() == 0

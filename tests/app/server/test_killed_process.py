@@ -13,9 +13,9 @@ from math import inf
 import pytest
 
 from onpath.app.classroom.class_state import SETTLED
+from tests.support.class_tab import ClassTab
 from tests.support.site import needs_nginx
 from tests.support.site_class import KEYS, Class, Running, quiet, return_to
-from tests.support.student import Student
 
 pytestmark = [pytest.mark.thorough, needs_nginx]
 
@@ -38,24 +38,24 @@ def come_in(running: Running, key: str) -> Iterator[Class]:
         return_to(ended, running, klass.prefix)
 
 
-def move(klass: Class, who: Student, seconds: float) -> dict[float, float]:
+def move(klass: Class, who: ClassTab, seconds: float) -> dict[float, float]:
     """Let somebody move a slider.
 
     Returns:
         When each value was sent, in the order of sending; each value is greater than the last.
     """
-    slider, end = who.find("K2"), time.monotonic() + seconds
+    slider, end = who.fields["K2"], time.monotonic() + seconds
     sent: dict[float, float] = {}
     while time.monotonic() < end:
-        value = slider["min"] + (len(sent) + 1) * slider["step"]
-        assert value <= slider["max"]
+        value = slider["low"] + (len(sent) + 1) * slider["step"]
+        assert value <= slider["high"]
         sent[value] = time.monotonic()
         who.set("K2", value)
         klass.until(lambda: time.monotonic() > sent[value] + EVERY)
     return sent
 
 
-def lose_the_process(klass: Class, who: Student, seconds: float = LOST) -> None:
+def lose_the_process(klass: Class, who: ClassTab, seconds: float = LOST) -> None:
     """The process is killed when somebody moves a slider; all come back on the other one.
 
     Args:
@@ -63,7 +63,7 @@ def lose_the_process(klass: Class, who: Student, seconds: float = LOST) -> None:
         seconds: how long it has been moved by then: what was done before is to be found again.
     """
     site, people = klass.running.site, {who, *klass.names}
-    klass.until(lambda: who.has_widget("K2"))
+    klass.until(lambda: who.values)
     sent = move(klass, who, seconds)
     killed, codes = site.serving(), [each.code for each in people]
     end = time.monotonic()
@@ -71,7 +71,7 @@ def lose_the_process(klass: Class, who: Student, seconds: float = LOST) -> None:
     klass.come_back()
     back = time.monotonic() - end
     assert site.serving() is not killed and [each.code for each in people] == codes
-    found = who.find("K2")["value"]
+    found = who.value("K2")
     lost = min(
         (end - when for value, when in sent.items() if value == pytest.approx(found)), default=inf
     )
@@ -80,7 +80,7 @@ def lose_the_process(klass: Class, who: Student, seconds: float = LOST) -> None:
 
 def choose_the_step(klass: Class) -> None:
     """The teacher looks at the step that asks for a prediction, of the first lesson."""
-    klass.teacher.set("Step", klass.teacher.find("Step")["options"][CHOICE])
+    klass.teacher.change("Step", klass.teacher.find("Step")["options"][CHOICE])
 
 
 def stopped(klass: Class) -> list[bool]:
@@ -94,11 +94,11 @@ def test_what_students_did_5_s_before_a_kill_is_in_the_class_which_is_back_withi
     with come_in(running, KEYS[0]) as klass:
         ada, teacher, until = klass.ada, klass.teacher, klass.until
         choose_the_step(klass)
-        teacher.set("Open this step for all", True)
+        teacher.change("Open this step for all")
         until(lambda: all(each.sees(f"Step {CHOICE + 1} of") for each in klass.names))
         ada.tell({"do": "Predict", "option": 0})
         until(lambda: teacher.sees(ANSWERED))
-        ada.set("Free lab", "Free lab")
+        ada.press("Free lab")
         until(lambda: not ada.sees(f"Step {CHOICE + 1} of"))
         lose_the_process(klass, ada, LOST + SETTLED)  # by then the step is known to be given her
         choose_the_step(klass)
@@ -110,9 +110,9 @@ def test_what_students_did_5_s_before_a_kill_is_in_the_class_which_is_back_withi
 
 def test_what_the_teacher_ordered_5_s_before_a_kill_still_holds(running: Running) -> None:
     with come_in(running, KEYS[1]) as klass:
-        klass.teacher.set("Freeze all labs", True)
+        klass.teacher.change("Freeze all labs")
         klass.until(lambda: stopped(klass) == [True, True])
         lose_the_process(klass, klass.teacher)  # whose own lab is not stopped
         klass.until(lambda: stopped(klass) == [True, True])
-        klass.teacher.set("Let all labs go on", True)
+        klass.teacher.change("Let all labs go on")
         klass.until(lambda: stopped(klass) == [False, False])

@@ -16,6 +16,7 @@ from onpath.app.server.lab_server import LabServer
 from onpath.app.server.server_options import ServerOptions
 from onpath.assets.messages import languages, preferred
 from onpath.lessons.words import ENGLISH, Words
+from tests.support.class_tab import ClassTab
 from tests.support.lab import loop_cache
 from tests.support.student import Student
 
@@ -57,7 +58,8 @@ def test_a_new_lab_speaks_the_language_of_its_browser(server: LabServer) -> None
     headers: Any = {"Accept-Language": "de-AT,de;q=0.9,en;q=0.5"}
     with Student(address, **headers) as student:
         student.open()
-        student.read(lambda: student.has_widget("Bahn") and student.code)
+        student.read(lambda: student.fields)
+        assert student.fields["path"]["label"] == "Bahn"
         lab = server.registry.find(student.code)
         assert lab is not None and lab.scheduled.lab.words.language == "de"
 
@@ -66,20 +68,18 @@ def test_the_teachers_page_follows_the_teachers_language_whoever_is_shown() -> N
     room, german = Classroom(), Words("de")
     server = LabServer("127.0.0.1", 0, loop_cache(), ServerOptions(classrooms=[room]))
     address = f"ws://127.0.0.1:{server.server.get_port()}/c/{room.code}"
-    with Student(address) as student, Student(address) as teacher:
+    with ClassTab(address) as student, ClassTab(address) as teacher:
         student.open()
-        student.set("Nickname", "Ada")
-        student.set("Join the class", True)
-        student.read(lambda: student.sees("You are in the class as"))
+        student.join("Ada")
+        student.read(lambda: student.is_member)
         teacher.open()
-        teacher.set("Teacher's key", shown(room.key))
-        teacher.set("Open the teacher's page", True)
+        teacher.teach(shown(room.key))
         teacher.read(lambda: teacher.has_widget("Freeze all labs") and teacher.code)
         own = server.registry.find(teacher.code)
         assert own is not None
         own.scheduled.lab.post(SetLanguage("de"))
         teacher.read(lambda: teacher.has_widget(german("class.freeze")))
-        teacher.set(german("class.follow"), "1. Ada")
+        teacher.change(german("class.follow"), "1. Ada")
         teacher.read(lambda: teacher.sees(german("class.following", name="Ada")))
         assert teacher.has_widget(german("class.freeze"))
     server.stop()

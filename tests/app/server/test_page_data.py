@@ -24,6 +24,7 @@ from onpath.app.viser_adapter.data_channel import SUBPROTOCOL
 from tests.bench.client_protocol import SEEN, hello
 from tests.bench.simulated_browser import SEES
 from tests.support import waiting
+from tests.support.class_tab import ClassTab
 from tests.support.own_socket import feeds
 from tests.support.student import Student
 
@@ -245,11 +246,12 @@ def test_a_page_that_is_told_nothing_of_another_s_lab(address: str) -> None:
 def test_a_page_keeps_its_websocket_when_its_scene_is_built_anew(address: str) -> None:
     with Student(address) as student:
         student.open()
-        student.find("K2")
-        student.widgets.clear()
+        student.read(lambda: student.moving)
         student.tell({"do": "ChooseRobot", "name": "two_link_arm"})
-        student.find("K2")
-        with Script(address, student._page) as script:
+        student.read(lambda: student.state["robot"] == "two_link_arm")
+        moving = student.moving
+        student.read(lambda: student.moving > moving)
+        with Script(address, student.page) as script:
             script.read_until("state", lambda state: state["robot"] == "two_link_arm")
             script.read("frame")
 
@@ -258,8 +260,7 @@ def test_a_lab_whose_page_does_not_listen_is_told_nothing(server: LabServer, add
     with Student(address) as student:
         student.open()
         student.read(lambda: student.moving > 3)
-        assert student._data is not None
-        student._data.close()  # viser's websocket remains
+        student.listen_no_more()  # viser's websocket remains
         (visit,) = server.visits
         wait_for(lambda: not visit.stream.is_open)
         opened, moving = visit.stream.opened, student.moving
@@ -271,18 +272,16 @@ def test_a_teacher_is_told_of_the_lab_that_is_shown_and_cannot_act_on_it(
     address: str, room: Classroom
 ) -> None:
     address = f"{address}/c/{room.code}"
-    with Student(address) as ada, Student(address) as teacher:
+    with ClassTab(address) as ada, ClassTab(address) as teacher:
         ada.open()
-        ada.set("Nickname", "Ada")
-        ada.set("Join the class", True)
+        ada.join("Ada")
         teacher.open()
-        teacher.set("Teacher's key", room.key)
-        teacher.set("Open the teacher's page", True)
+        teacher.teach(room.key)
         teacher.find("Follow")
-        with Script(address, teacher._page) as script:
+        with Script(address, teacher.page) as script:
             script.read("frame")
             teacher.find("1. Ada")
-            teacher.set("Follow", "1. Ada")
+            teacher.change("Follow", "1. Ada")
             assert not script.read_until("state", lambda state: not state["own"])["own"]
             ada.tell({"do": "Hold", "on": True})
             script.read_until("frame", lambda frame: frame["rows"][-1][1] == 3)
@@ -313,4 +312,4 @@ def test_a_page_that_could_not_be_made_comes_again(
         student.wait_until_closed()
         assert error_log._seen.total() > before  # logged in full once in a process
         student.reopen()
-        student.find("K2")
+        student.read(lambda: student.moving)

@@ -15,7 +15,7 @@ from tests.support.site_class import CODES, KEYS, Class, Running, quiet, return_
 
 pytestmark = [pytest.mark.thorough, needs_nginx]
 
-NUMBERS = built_in_course()[0].numbers()
+NAMES = [*built_in_course()[0].numbers()]
 
 
 def alone(running: Running) -> str:
@@ -64,15 +64,13 @@ def test_a_student_whose_process_is_killed_goes_on_with_the_other(running: Runni
     with running.site.student(prefix) as student:
         student.open()
         student.set("K2", 44.0)
-        student.set("Path", "clover")
-        student.set("Lessons", True)
-        numbers = NUMBERS.values()
-        student.read(lambda: all(student.has_widget(f"Open lesson {each}") for each in numbers))
-        student.set(f"Open lesson {[*numbers][-1]}", True)
-        student.set("Next", True)
+        student.set("path", "clover")
+        *_, last = NAMES
+        student.tell({"do": "OpenLesson", "name": last})
+        student.press("Next")
         student.read(lambda: student.sees("Step 2 of"))
         student.tell({"do": "Predict", "option": 1})
-        student.read(lambda: student.has_widget("Next") and not student.has_widget("Commit"))
+        student.read(lambda: student.has_button("Next") and not student.has_button("Commit"))
         kept = ("'answers': {'1'", "'K2': 44.0", "'clover'")
         student.read(lambda: running.has_kept(student.code, *kept))
         killed, code = running.site.serving(), student.code
@@ -81,12 +79,11 @@ def test_a_student_whose_process_is_killed_goes_on_with_the_other(running: Runni
         student.reopen()
         student.read(lambda: student.sees("Step 2 of"))
         assert running.site.serving() is not killed and student.code == code
-        student.read(lambda: student.has_widget("Next"))
-        assert not student.has_widget("Commit") and not student.has_widget("Skip")  # predicted
-        student.set("Free lab", "Free lab")
+        student.read(lambda: student.has_button("Next"))
+        assert not student.has_button("Commit") and not student.has_button("Skip")  # predicted
+        student.press("Free lab")
         student.read(lambda: not student.sees("Step 2 of"))
-        for label, value in (("Path", "clover"), ("K2", 44.0)):
-            student.read(lambda label=label, value=value: student.find(label)["value"] == value)
+        assert student.value("path") == "clover" and student.value("K2") == 44.0
         killed.start_again()
     quiet(running)
     return_to(killed, running, prefix)
@@ -98,15 +95,15 @@ def test_a_class_whose_process_is_killed_goes_on_with_the_other_and_stays(
     with ExitStack() as stack:
         klass = Class(running, stack)
         klass.come_in()
-        ada, bob, until, press = klass.ada, klass.bob, klass.until, klass.teacher.set
+        ada, bob, until, press = klass.ada, klass.bob, klass.until, klass.teacher.change
         codes = [ada.code, bob.code]
-        press("Open this step for all", True)
+        press("Open this step for all")
         until(lambda: ada.sees("Step 1 of") and bob.sees("Step 1 of"))
-        ada.set("Next", True)
+        ada.press("Next")
         until(lambda: ada.sees("Step 2 of"))
         until(lambda: {each["taken"] for each in running.kept_class().get("members", [])} == {1})
         until(lambda: running.has_kept(ada.code, "'step': 1"))
-        press("Freeze all labs", True)
+        press("Freeze all labs")
         until(lambda: bob.sees("stopped all labs"))
         until(lambda: running.kept_class().get("frozen"))
         killed = running.site.serving()
@@ -115,7 +112,7 @@ def test_a_class_whose_process_is_killed_goes_on_with_the_other_and_stays(
         assert running.site.serving() is not killed and [ada.code, bob.code] == codes
         until(lambda: ada.sees("Step 2 of") and ada.sees("stopped all labs"))
         until(lambda: bob.sees("Step 1 of") and bob.sees("stopped all labs"))
-        press("Let all labs go on", True)
+        press("Let all labs go on")
         until(lambda: not bob.sees("stopped all labs"))
         # The class stays where it is, also when somebody new is sent to the first process.
         killed.start_again()
@@ -130,18 +127,15 @@ def test_a_class_whose_process_is_killed_goes_on_with_the_other_and_stays(
 def test_a_class_is_joined_at_its_own_address_only(running: Running) -> None:
     with running.site.student(alone(running)) as student:
         student.open()
-        student.set("Class code", CODES[1])
-        student.set("Join the class", True)
+        student.change("Class code", CODES[1])
+        student.change("Join the class")
         student.read(lambda: student.sees(f'href="../../c/{CODES[1]}/"'))
-        student.set("Teacher's key", shown(KEYS[0]))
-        student.set("Open the teacher's page", True)
+        student.teach(shown(KEYS[0]))
         student.read(lambda: student.sees(f'href="../../c/{CODES[0]}/"'))
-        student.set("Teacher's key", shown(new_code()))
-        student.set("Open the teacher's page", True)
+        student.teach(shown(new_code()))
         student.read(lambda: student.sees("not the teacher"))
     with running.site.student("c/234567") as other:  # no class's
         other.open()
-        other.set("Nickname", "Eve")
-        other.set("Join the class", True)
+        other.join("Eve")
         other.read(lambda: other.sees("not the class code"))
     quiet(running)

@@ -147,7 +147,7 @@ def test_a_hidden_tab_gets_nothing_and_then_the_present_whole(server: LabServer,
     assert scheduled.simulation.time == simulated and tab.moving == moving
     scheduled.lab.post(c.ChoosePath("clover"))  # a teacher does, say
     tab.hide(False)
-    tab.read(lambda: tab.find("Path")["value"] == "clover" and tab.moving > moving + 10)
+    tab.read(lambda: tab.values["path"] == "clover" and tab.moving > moving + 10)
     assert scheduled.simulation.time > simulated
 
 

@@ -31,7 +31,7 @@ linux_only = pytest.mark.skipif(sys.platform != "linux", reason="tried on Linux 
 
 # A lab in which some values of K1 hang whoever applies or handles them.
 HANGING = """
-import sys, threading, onpath.app.page.panels.widgets as widgets
+import sys, threading, onpath.app.server.page_form as page_form
 from onpath.app.cli.main import run_command
 from onpath.app.lab.commands import Set
 
@@ -51,7 +51,7 @@ def made(name, value):
     hang(value - 10.0 if name == "K1" else 0.0)
     return Set(name, value)
 
-applied, Set.apply, widgets.Set = Set.apply, apply, made
+applied, Set.apply, page_form.Set = Set.apply, apply, made
 sys.exit(run_command(["serve", *sys.argv[1:]]))
 """
 
@@ -180,7 +180,7 @@ def test_a_simulation_that_hangs_is_replaced_and_its_labs_go_on(
         served.start_again()
         code = student.code
         student.reopen()
-        assert student.code == code and student.find("K2")["value"] == 44.0
+        assert student.code == code and student.value("K2") == 44.0
     said = served.said
     assert said.count("the simulation thread hangs: no sign of life for 2 s") == 1
     assert where in said

@@ -215,7 +215,7 @@ def test_a_browser_shows_it(tmp_path: Path, impatient: None) -> None:
     try:
         with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
             student.open()
-            student.find("K2")
+            student.value("K2")
             with locked(file):
                 student.set("K2", 44.0)
                 student.read(lambda: student.sees(ENGLISH("keep.failed")))

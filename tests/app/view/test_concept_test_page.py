@@ -42,13 +42,11 @@ def test_both_tests_are_in_the_overview_and_open_from_it(
     server: LabServer, student: Student
 ) -> None:
     lab = wait_for(lambda: server.registry.find(student.code)).scheduled.lab
-    student.set(ENGLISH("lesson.lessons"), True)
-    title = TEST.front.title
-    for key in ("test.title_before", "test.title_after"):
-        student.read(lambda key=key: student.sees(ENGLISH(key, title=title)))
-    student.read(lambda: student.count(ENGLISH("test.open")) == 2)
-    student.set(ENGLISH("test.open"), True)  # the one that was added last
-    wait_for(lambda: lab.lessons.progress.lesson == AFTER)
+    first, *_, last = student.ask("lessons")["lessons"]
+    for card, name, key in ((first, BEFORE, "before"), (last, AFTER, "after")):
+        assert card["title"] == ENGLISH(f"test.title_{key}", title=TEST.front.title)
+        student.tell({"do": "OpenLesson", "name": card["name"]})
+        wait_for(lambda name=name: lab.lessons.progress.lesson == name)
 
 
 @pytest.mark.thorough
@@ -66,6 +64,6 @@ def test_a_student_answers_is_told_nothing_and_hands_in(
     student.read(lambda: student.sees(ENGLISH("test.answered", part=1, all=12)))
     assert not any(str(option.answer) in student.column for option in block.options)
     assert ENGLISH("lesson.not_quite") not in student.column and "✗" not in student.column
-    student.set(ENGLISH("test.hand_in"), True)
+    student.press(ENGLISH("test.hand_in"))
     student.read(lambda: student.sees(ENGLISH("test.later")))
     assert lab.lessons.notes.handed_in

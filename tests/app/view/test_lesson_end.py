@@ -71,7 +71,7 @@ def at_the_end(site: Site, answers: dict[str, Answer], truths: dict[str, Truth])
     notes = replace(site.lab.lessons.notes, answers=answers, truths=truths, quiz={"7.0": 1})
     progress = site.lab.lessons.progress
     site.lab.lessons.progress = replace(progress, notes={**progress.notes, "01-a": notes})
-    site.student.set("Finish", True)
+    site.student.press("Finish")
     site.sees("What you predicted, and what happened", POINT)
 
 
@@ -95,16 +95,16 @@ def test_what_has_not_been_seen_is_not_told(site: Site) -> None:
 @pytest.mark.thorough
 def test_it_leads_back_and_to_the_next_lesson(site: Site) -> None:
     at_the_end(site, {}, {})
-    site.student.set("Back", True)
+    site.student.press("Back")
     site.sees("Step 8 of 8")
-    site.student.set("Finish", True)
-    site.student.set("Open lesson 2: A lesson", True)
+    site.student.press("Finish")
+    site.student.press("Open lesson 2: A lesson")
     site.sees("Step 1 of 8")
     assert site.lab.lessons.progress.lesson == "02-b"
     site.lab.post(TakeStep("02-b", 7))
-    site.student.set("Finish", True)
+    site.student.press("Finish")
     site.sees("What you predicted, and what happened")
-    assert not site.student.has_widget("Open lesson 3")
+    assert not site.student.has_button("Open lesson 3")
 
 
 def test_pages_are_turned_to_the_end_and_back(tmp_path: Path) -> None:

@@ -28,19 +28,18 @@ def test_a_student_follows_a_route_from_the_list_to_its_end(tmp_path: Path) -> N
             student.open()
             student.read(lambda: student.code)
             lab = wait_for(lambda: server.registry.find(student.code)).scheduled.lab
-            student.set(ENGLISH("lesson.lessons"), True)
-            student.read(lambda: student.has_widget(ENGLISH("route.follow")))
-            assert student.sees("A lesson, steps 2 to 3, 5 min") and student.sees("11.5 min")
-            student.set(ENGLISH("route.follow"), True)
+            (route,) = student.ask("lessons")["routes"]
+            assert "1. A lesson, steps 2 to 3, 5 min" in route["stops"] and "11.5" in route["minutes"]
+            student.tell({"do": "FollowRoute", "name": route["name"]})
             student.read(lambda: student.sees("Short: part 1 of 3, to step 3, 5 min"))
             assert lab.lessons.progress.route == "short"
             lab.post(TakeStep("02-b", 5))
             student.read(lambda: student.sees("Short: part 2 of 3, to step 6, 2.5 min"))
-            student.set(ENGLISH("lesson.next"), True)
+            student.press(ENGLISH("lesson.next"))
             student.read(lambda: student.sees("Short: part 3 of 3"))
-            assert not student.has_widget(ENGLISH("lesson.finish"))
-            student.set(ENGLISH("lesson.next"), True)
-            student.read(lambda: student.has_widget(ENGLISH("lesson.finish")))
+            assert not student.has_button(ENGLISH("lesson.finish"))
+            student.press(ENGLISH("lesson.next"))
+            student.read(lambda: student.has_button(ENGLISH("lesson.finish")))
             lab.post(TakeStep("02-b", 0))
             student.read(lambda: student.sees("Step 1 of 8") and not student.sees("Short: part"))
     finally:

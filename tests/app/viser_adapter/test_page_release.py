@@ -40,7 +40,7 @@ def arrived(server: LabServer) -> Student:
     """A tab whose page is shown."""
     student = Student(f"ws://127.0.0.1:{server.server.get_port()}")
     student.open()
-    student.read(lambda: student.has_widget("K2") and student.moving > 5)
+    student.read(lambda: student.moving > 5)
     return student
 
 
@@ -68,7 +68,7 @@ def test_a_page_that_is_built_anew_leaves_nothing(server: LabServer) -> None:
     parts = parts_of(server, keys=False)  # they stay
     (entry,) = server.registry._entries.values()
     entry.scheduled.lab.post(SetLanguage("de"))
-    student.read(lambda: student.has_widget("Für beide"))
+    student.read(lambda: student.state["language"] == "de")
     wait_for(lambda: not any(part() for part in parts), WAIT)
     student.close()
 
