@@ -4,20 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-import numpy as np
 import viser
+from typing_extensions import override
 
-from onpath.app.common.palette import AZURE
 from onpath.app.common.templates import render
-from onpath.app.common.work_thread import WorkThread
 from onpath.app.exports.exporter import Exporter, ViserDelivery
 from onpath.app.exports.path_upload import PathReader
 from onpath.app.lab import commands as c
-from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
-from onpath.app.lab.snapshots.snapshot import Motion
-from onpath.app.page.build_queue import in_turn, one_at_a_time
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
+from onpath.app.lab.snapshots.snapshot import PageKey
 from onpath.app.page.lesson_menu import LessonMenu
-from onpath.app.page.overlays import Overlays, Switches
 from onpath.app.page.page_context import PageContext
 from onpath.app.page.page_menus import PageMenus
 from onpath.app.page.panel_factory import PanelFactory, Part
@@ -25,40 +21,22 @@ from onpath.app.page.panels.class_panel import ClassPanel
 from onpath.app.page.panels.keys import Keys
 from onpath.app.page.panels.widgets import Post
 from onpath.app.page.step_controls import Build, StepControls
-from onpath.app.page.step_drawings import StepDrawings
-from onpath.app.scene.mouse import SceneCallbacks
-from onpath.app.scene.pointer_projection import plane_coordinates
-from onpath.app.scene.projection import seen_by, seen_from
-from onpath.app.scene.scene import Scene
-from onpath.app.scene.stage import NARROW, Insets, view_of
-from onpath.app.scene.stage_catalogue import stage_of
-from onpath.app.scene.tones import DARK, LIGHT
-from onpath.app.view.state_message import Projection
-from onpath.app.viser_adapter.frame_channel import FrameChannel
+from onpath.app.scene.client_scene import SETTLING, ClientScene
+from onpath.app.scene.stage import NARROW
 from onpath.app.viser_adapter.local_storage import ask_item
 from onpath.app.viser_adapter.page_release import clear_widgets
 from onpath.lessons.words import Words
-from onpath.models.arrays import Array
-from onpath.models.systems.robots import Robot
 
-SETTLING = 30  # slow updates after the page is built
-STANDS = 5  # of them, until the panel can be folded
+STANDS = 5  # slow updates until the panel can be folded
 CONTROL_WIDTH, LARGE_WIDTH = 330, 560  # [px], the latter for a plot on a projector
-TITLES = 44.0  # [px], of the scene, that the titles of the robots take
-MOST_TITLES = 0.1  # of its height
-NEAR = 1e-3  # of its distance from the robots, to where a camera is put
 SHAPE_KEY = "shape"
 """Where a browser keeps its window's shape; see assets/page/portrait.js."""
 
 
-class Page:
-    """The page of one client. Built in a separate thread, then updated by the simulation thread.
-
-    Args:
-        first: the initial snapshot.
+class Page(ClientScene):
+    """The page of one client.
 
     Attributes:
-        is_outdated: whether the page must be rebuilt, for which it needs a complete snapshot.
         exporter: creates the files requested on this page.
     """
 
@@ -67,12 +45,8 @@ class Page:
     ) -> None:
         self._client = client
         self._context = context
-        self._channel = FrameChannel(client)
         self.exporter, self._files = Exporter(ViserDelivery(client)), PathReader()
-        self._rebuilds, self._keys = WorkThread("rebuild"), Keys(client.gui)
-        self._framed, self._settling = 0.0, SETTLING
-        self._switches, self._switched = Switches(), set[str]()
-        self._building, self.is_outdated = True, False
+        self._keys = Keys(client.gui)
         client.gui.set_panel_label("OnPath")
         self._narrow: bool | None = None  # not laid out yet
         self._low = False
@@ -80,100 +54,25 @@ class Page:
         self._wants_folded = False
         self._step: StepControls | None = None
         self._wanted_narrow = self._is_narrow()
-        with in_turn(), client.atomic():  # the browser gets no widget without its callbacks
-            self._build(first)
+        self._parts: list[Part] = []
+        super().__init__(client, first, context.look, context.course, context.post, set())
 
+    @override
     def close(self) -> None:
-        """Release resources after the tab has closed."""
+        super().close()
         self.exporter.close()
-        self._rebuilds.close()
         self._keys.close()
 
-    @property
-    def is_ready(self) -> bool:
-        """Whether the page is built and its client is connected."""
-        return not self._building and not self._channel.closed
+    @override
+    def _show_all(self, snapshot: PageSnapshot) -> None:
+        super()._show_all(snapshot)
+        self._follow_fold()
+        for part in self._parts:
+            part.follow(snapshot)
 
-    def show(self, snapshot: PageSnapshot | Motion) -> None:
-        """Show a snapshot. Called on the simulation thread while the page is ready."""
-        is_other = self._key(snapshot) != self._built or self._dark != self._context.look.dark
-        if is_other or self._wanted_narrow != self._narrow:
-            self._renew(snapshot)
-            return
-        with self._channel:
-            if isinstance(snapshot, Motion):
-                self._scene.update(snapshot)
-                self._overlays.update(snapshot)
-                return
-            motion = snapshot.motion
-            self._scene.update(motion)
-            self._scene.update_traces(snapshot)
-            self._overlays.update(motion)
-            self._overlays.follow(snapshot)
-            self._scene.show_singular_zone(self._switches.zone and self._robot.frame.p == 2)
-            self._scene.show_start(self._switches.start)
-            self._frame_camera()
-            self._follow_fold()
-            for part in self._parts:
-                part.follow(snapshot)
-
-    @property
-    def client(self) -> viser.ClientHandle:
-        """Whose page it is."""
-        return self._client
-
-    def draw(self) -> None:
-        """Take the next stroke around a robot as the path; called again, take none."""
-        if self._scene.is_drawing:
-            self._scene.end_freehand()
-            return
-        robot, post = self._robot, self._post
-        self._scene.begin_freehand(
-            lambda stroke: post(c.DrawPath(plane_coordinates(robot, stroke)))
-        )
-
-    @property
-    def switches(self) -> Switches:
-        """What the page draws besides the robots."""
-        return self._switches
-
-    def settle(self) -> None:
-        """Refit the camera now and for a while, because the canvas has changed its size."""
-        self._framed, self._settling = 0.0, SETTLING
-
-    def reset_view(self) -> None:
-        """Schedule a reset of the camera to its initial pose. Thread-safe."""
-        self._framed = 0.0
-
-    def send(self) -> None:
-        """Send the frame to the browser."""
-        self._channel.send()
-
-    def seen(self, snapshot: PageSnapshot) -> Projection:
-        """How the picture shows the robots, or how it will as soon as its camera is in place."""
-        camera = self._client.camera
-        if self._stands and not self.is_outdated:
-            return seen_by(camera, self._scene.stage, self._robot)
-        robot = robot_of(snapshot)
-        stage = stage_of(robot)
-        width, height = max(camera.image_width, 1), max(camera.image_height, 1)
-        pose = view_of(stage, (width, height), self._insets(height))
-        off, away = (np.linalg.norm(x - pose.position) for x in (camera.position, pose.look_at))
-        self._stands = bool(off < NEAR * away) or not self._settling
-        return seen_from(pose, stage, robot)
-
-    def _renew(self, snapshot: PageSnapshot | Motion) -> None:
-        """Rebuild the page; nothing is shown until it is complete."""
-        self.is_outdated, self._stands = True, False
-        if isinstance(snapshot, PageSnapshot):
-            self._building = True
-            self._rebuilds.submit(lambda: self._rebuild(snapshot))
-
-    def _rebuild(self, first: PageSnapshot) -> None:
-        with in_turn(), self._client.atomic():
-            clear_widgets(self._client)
-            self._framed, self._settling = 0.0, SETTLING
-            self._build(first)
+    @override
+    def _clear(self) -> None:
+        clear_widgets(self._client)
 
     def _change(self, work: Callable[[], None]) -> None:
         """Change widgets in another thread; the browser receives the change as a whole.
@@ -187,9 +86,9 @@ class Page:
 
         self._rebuilds.submit(atomically)
 
-    def _key(self, snapshot: PageSnapshot | Motion) -> tuple[object, ...]:
-        """Key of everything the page layout depends on; a change triggers a rebuild."""
-        return (snapshot.key,)
+    @override
+    def _key(self, key: PageKey) -> tuple[object, ...]:
+        return key, self._look.dark, self._wanted_narrow
 
     def _is_folded(self, snapshot: PageSnapshot) -> bool:
         """Whether the panel makes room for the stage, as for a projector."""
@@ -203,48 +102,27 @@ class Page:
         """The function that receives the commands of this page."""
         return self._context.post
 
+    @override
     def _build(self, first: PageSnapshot) -> None:
-        post, words, robot = self._post_for(first), self._words_for(first), robot_of(first)
-        self._dark, text = self._context.look.dark, self._context.text
-        self._built, self._step = self._key(first), None
-        self._stands = False
-        self._client.gui.configure_theme(
-            show_logo=False,
-            show_share_button=False,
-            brand_color=AZURE.rgb,
-            dark_mode=self._dark,
-        )
-        self._post = post
+        post, words = self._post_for(first), self._words_for(first)
+        self._step = None
+        self._look.upright = self._wanted_narrow
         self._lay_out(first)
-        tones = DARK if self._dark else LIGHT
-        stage = stage_of(robot, tones, self._context.look.plain)
-        self._robot = robot
-        self._scene = Scene(self._client, stage, _hooks(post, robot), words, titled=False)
-        self._scene.build(first)
-        one_at_a_time.rest()
-        self._overlays = Overlays(
-            scene=self._client.scene,
-            stage=self._scene.stage,
-            robot=robot,
-            switches=self._switches,
-            submit=self._rebuilds.submit,
-            is_narrow=bool(self._narrow),
-        )
-        self._parts: list[Part] = []
+        self._parts = []
+        super()._build(first)
+        self._building = True
         self._client.gui.add_html(
             render("panel/page.html", words=words, client=self._client.client_id)
         )
-        self._parts.append(
-            StepDrawings(self._overlays, self._context.course, words, self._switched)
-        )
         self._build_panels(first, words, post)
+        text = self._context.text
         page_actions = {
             "view": self.reset_view,
             "summary": lambda: text.narration.ask_summary(),
             "lesson": lambda: self._open_first_lesson(post),
         }
         self._keys.renew(words, post, page_actions)
-        self._building = self.is_outdated = False
+        self._building = False
 
     def _open_first_lesson(self, post: Post) -> None:
         """Open the first lesson, to which the invitations of the first minute lead."""
@@ -361,40 +239,9 @@ class Page:
         self._wanted_narrow = kept == "upright" if known else self._is_narrow()
         self._low = kept == "low"
 
+    @override
     def _frame_camera(self) -> None:
-        """Refit the camera to both robots when the aspect ratio of the view changes.
-
-        The size in device pixels is ignored, because slow browsers change it on their own. While
-        panels settle, a browser may not report its final shape until it is sent a camera again.
-        """
-        if self._settling:
-            self._settling -= 1
-            if self._settling % 10 == 0:
-                self._framed = 0.0
-        camera = self._client.camera
-        width, height = camera.image_width, camera.image_height
-        shape = width / max(height, 1)
-        if width > 0 and abs(shape - self._framed) > 0.02 * shape:
-            self._framed = shape
+        before = self._framed
+        super()._frame_camera()
+        if self._framed != before:
             ask_item(self._client, SHAPE_KEY, self._heard_shape)
-            self._scene.frame_camera(self._insets(height))
-
-    def _insets(self, height: float) -> Insets:
-        """Margins of the canvas, for our titles."""
-        return Insets(top=min(TITLES, MOST_TITLES * height))
-
-
-def _hooks(post: Post, robot: Robot) -> SceneCallbacks:
-    def move(index: int, at: Array) -> None:
-        post(c.MovePoint(index, plane_coordinates(robot, at), finished=False))
-
-    return SceneCallbacks(
-        on_grab=lambda name, at: post(c.Grab(name, robot.output_at(at))),
-        on_release=lambda name: post(c.Release(name)),
-        on_point_dragged=move,
-        on_point_drag_end=lambda _: post(c.EndMove()),
-        on_point_selected=lambda index: post(c.SelectPoint(index)),
-        on_wall_moved=lambda at: post(c.MoveWall(plane_coordinates(robot, at))),
-        on_wall_turned=lambda end, at: post(c.SwingWall(end, plane_coordinates(robot, at))),
-        on_start_moved=lambda at: post(c.MoveStart(plane_coordinates(robot, at))),
-    )

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from onpath.app.page.page_text import PageText
 from onpath.app.page.panels.widgets import Post
+from onpath.app.scene.client_scene import Look
 from onpath.lessons.course import Course
 
 
@@ -26,19 +27,6 @@ class ClassSeat:
     leave: Callable[[], None]
     teach: Callable[[str], str]
     code: str = ""
-
-
-@dataclass(slots=True)
-class Look:
-    """How a browser's scene is to be drawn.
-
-    Attributes:
-        dark: whether the browser asks for dark pages; this may change.
-        plain: whether it draws in software, so that the scene must be quickly drawn.
-    """
-
-    dark: bool = False
-    plain: bool = False
 
 
 @dataclass(frozen=True, slots=True)

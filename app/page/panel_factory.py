@@ -11,8 +11,6 @@ from onpath.app.common.background import Submit
 from onpath.app.exports.exporter import Exporter
 from onpath.app.exports.path_upload import PathReader
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
-from onpath.app.page.build_queue import one_at_a_time
-from onpath.app.page.overlays import Overlays
 from onpath.app.page.page_context import PageContext
 from onpath.app.page.panels.compare_panel import ComparePanel
 from onpath.app.page.panels.export_folder import add_exports
@@ -26,6 +24,8 @@ from onpath.app.page.panels.show_panel import ShowPanel
 from onpath.app.page.panels.start_panel import StartPanel
 from onpath.app.page.panels.wall_panel import WallPanel
 from onpath.app.page.panels.widgets import ParameterWidgets, Post, on_press
+from onpath.app.scene.build_queue import one_at_a_time
+from onpath.app.scene.overlays import Overlays
 from onpath.app.scene.scene import Scene
 from onpath.lessons.action_schema import StepSetup
 from onpath.lessons.vocabulary.names import CONTROLS
@@ -112,7 +112,6 @@ class PanelFactory:
         return ParameterWidgets(self._gui, self._words, self._post, names=names, first=first)
 
     def _add_others(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
-        self._scene.mouse.path_first = "editor" in scene.controls
         names = [name for name in scene.controls if name in CONTROLS and name not in IN_STRIP]
         return [part for name in names for part in self._add(name, first, True)]
 

@@ -8,12 +8,13 @@ from typing_extensions import override
 from onpath.app.classroom.teaching.teacher_context import TeacherContext
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
-from onpath.app.lab.snapshots.snapshot import Motion
+from onpath.app.lab.snapshots.snapshot import PageKey
 from onpath.app.page.page import Page
 from onpath.app.page.page_context import PageContext
 from onpath.app.page.panels.widgets import Post
 from onpath.app.page.teaching.teacher_controls import FollowedStudent, TeacherControls
 from onpath.app.page.teaching.teacher_panel import TeacherPanel
+from onpath.app.scene.client_scene import ClientScene
 from onpath.lessons.words import Words
 
 
@@ -35,10 +36,15 @@ class TeacherPage(Page):
         super().__init__(client, first, context)
 
     @override
-    def _key(self, snapshot: PageSnapshot | Motion) -> tuple[object, ...]:
-        key = snapshot.key
-        own = self._teaching.progress()
-        return key.student, key.robot, key.fields, key.plane, own.language, self._presents
+    def _key(self, key: PageKey) -> tuple[object, ...]:
+        scene = ClientScene._key(self, key)
+        return (
+            *scene,
+            self._wanted_narrow,
+            key.fields,
+            self._teaching.progress().language,
+            self._presents,
+        )
 
     @override
     def _words_for(self, snapshot: PageSnapshot) -> Words:

@@ -50,7 +50,7 @@ class Scene:
         client: owner of the scene; no other client and no shared scene is modified.
         stage: where the robots stand.
         hooks: callbacks of the scene.
-        words: message catalogue for the labels.
+        words: message catalogue for titles and sizes.
         titled: whether titles and the sizes of forces are drawn; else the page shows them.
 
     Attributes:
@@ -148,7 +148,7 @@ class Scene:
         if freehand is not None:
             freehand.draw()
         for note in self._notes:
-            note.show(self._words("scene.draw") if drawing else snapshot.note)
+            note.show(Words(snapshot.key.language)("scene.draw") if drawing else snapshot.note)
 
     def show_singular_zone(self, visible: bool = True) -> None:
         """Shade the nearly singular points in the path's plane, or remove the shading."""

@@ -22,11 +22,11 @@ from onpath.app.common.periodic import Periodic
 from onpath.app.exports import exporter as exports
 from onpath.app.exports import path_upload
 from onpath.app.lab.loops.loop_cache import LoopCache
-from onpath.app.page.build_queue import BuildQueue, one_at_a_time
 from onpath.app.page.page import Page
 from onpath.app.page.page_context import PageContext
 from onpath.app.page.page_text import PageText
 from onpath.app.page.teacher_page import TeacherPage
+from onpath.app.scene.build_queue import BuildQueue, one_at_a_time
 from onpath.app.scene.stage import set_initial_camera
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.server.admission_queue import AdmissionQueue

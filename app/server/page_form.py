@@ -20,7 +20,6 @@ from onpath.app.channel.messages import (
 from onpath.app.lab.commands import ChooseLaw, ChoosePath, PlacePoint, SelectPoint, Set, TypeLaw
 from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
-from onpath.app.page.overlays import Switches
 from onpath.app.page.page import Page
 from onpath.app.view.lab_form import (
     NO_STEP,
@@ -125,12 +124,13 @@ class PageForm:
         Args:
             page: viser's part, if it is there; it has the drawings.
         """
-        switches = Switches() if page is None else page.switches
+        switches = set[str]() if page is None else page.switches
         heard = dict(self._heard)
         while self._own:
             message = self._own.popleft()
             if message.name in _DRAWN:
-                setattr(switches, _DRAWN[message.name], bool(message.value))
+                change = switches.add if message.value else switches.discard
+                change(_DRAWN[message.name])
             self._hear(message.name, message.number)
             heard[message.name] = message.number
         setup = _setup(snapshot, course, words)
@@ -140,7 +140,7 @@ class PageForm:
             if form is not before:
                 yield form
         self._forms = forms
-        drawn = {name: bool(getattr(switches, name)) for name in SWITCHES}
+        drawn = {name: name in switches for name in SWITCHES}
         values = values_in(snapshot, drawn, self._typing, words)
         refused = refusals_in(snapshot)
         changed = dict[str, FieldValue]()

@@ -10,7 +10,7 @@ import viser
 from onpath.app.channel.messages import Hello, Refused, Store, StoredName, Wait, encoded
 from onpath.app.classroom.teaching.teacher_context import TeacherChoices
 from onpath.app.common.error_log import log_error
-from onpath.app.page.page_context import Look
+from onpath.app.scene.client_scene import Look
 from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.tab_visibility import TabVisibility
 from onpath.app.simulation.scheduled_lab import ScheduledLab

@@ -52,7 +52,8 @@ from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
 
 SWITCHES = (*DRAWINGS, "zone", "start")
-"""What a page can draw besides the robots: fields of `app.page.overlays.Switches`."""
+"""What a page can draw besides the robots: what lessons can name, the shading of the singular zone,
+and the start of the next run, which can be dragged."""
 SHOWN = "show_"
 """Begins the names of the fields of those that no lesson names."""
 NO_STEP = FormMessage(place="step", groups=())

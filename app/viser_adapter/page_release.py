@@ -27,15 +27,22 @@ def clear_widgets(client: viser.ClientHandle) -> None:
 
     viser's commands stay: until the page is built anew, its browser goes on sending their keys.
     """
-    gui, nodes = client.gui, list(client.scene._handle_from_node_name.values())
+    gui = client.gui
     widgets: list[Any] = list(gui._gui_input_handle_from_uuid.values())
     containers: dict[str, Any] = gui._container_handle_from_uuid
-    client.scene.reset()
+    clear_scene(client)
     for each in [*containers["root"]._children.values(), *gui._panel_handle_from_uuid.values()]:
         each.remove()
     for window in list(gui._modal_handle_from_uuid.values()):
         window.close()
-    _forget_callbacks(widgets, nodes)
+    _forget_callbacks(widgets, [])
+
+
+def clear_scene(client: viser.ClientHandle) -> None:
+    """Remove all nodes of a page, and forget their callbacks."""
+    nodes = list(client.scene._handle_from_node_name.values())
+    client.scene.reset()
+    _forget_callbacks([], nodes)
 
 
 def release_page(client: viser.ClientHandle) -> None:

@@ -11,7 +11,6 @@ from onpath.app.channel.file_inbox import MOST_BYTES
 from onpath.app.exports.path_upload import PathReader, Upload
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of, robot_of
-from onpath.app.page.overlays import Switches
 from onpath.app.page.panels.widgets import (
     LabValue,
     ParameterWidgets,
@@ -88,7 +87,7 @@ class PathPanel:
         post: Post,
         first: PageSnapshot,
         draw: Callable[[], None],
-        switches: Switches,
+        switches: set[str],
         files: PathReader,
     ) -> None:
         self._version, self._words, self._latest = -1, words, first
@@ -114,9 +113,11 @@ class PathPanel:
         gui.add_markdown(words("design.arrows"))
         self._sampled: np.ndarray | None = None
         self._rank = gui.add_markdown("")
-        zone = gui.add_checkbox(words("design.zone"), switches.zone, hint=words("design.zone_hint"))
+        zone = gui.add_checkbox(
+            words("design.zone"), "zone" in switches, hint=words("design.zone_hint")
+        )
         zone.visible = planar  # the zone is drawn about the base pivot in the robot's plane
-        on_user_update(zone, lambda on: setattr(switches, "zone", on))
+        on_user_update(zone, lambda on: (switches.add if on else switches.discard)("zone"))
 
     def _add_plane(self, gui: viser.GuiApi, post: Post, first: PageSnapshot) -> None:
         """Add number inputs for the plane of eq. (23); a change of the plane rebuilds the page."""

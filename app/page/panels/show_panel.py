@@ -10,8 +10,8 @@ import viser
 from onpath.app.common.palette import SCALE
 from onpath.app.common.templates import render
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
-from onpath.app.page.overlays import Overlays
 from onpath.app.page.panels.widgets import note, on_user_update, put
+from onpath.app.scene.overlays import Overlays
 from onpath.app.scene.rank_nodes import largest, map_opacity
 from onpath.app.scene.tube_nodes import TubeShape
 from onpath.lessons.words import Words
@@ -55,17 +55,17 @@ class ShowPanel:
     def _add(self, gui: viser.GuiApi, name: str) -> None:
         switches = self._overlays.switches
         label, hint = map(self._words, SWITCHES[name])
-        box = gui.add_checkbox(label, getattr(switches, name), hint=hint)
-        on_user_update(box, lambda on: setattr(switches, name, on))
+        box = gui.add_checkbox(label, name in switches, hint=hint)
+        on_user_update(box, lambda on: (switches.add if on else switches.discard)(name))
         self._boxes[name] = box
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show which drawings are on, even if switched elsewhere on the page, and their numbers."""
         overlays = self._overlays
         for name, box in self._boxes.items():
-            put(box, value=getattr(overlays.switches, name))
+            put(box, value=name in overlays.switches)
         alpha = _alpha(snapshot) if overlays.rank_map is not None else None
-        shape, grid, rank_map = overlays.shape, overlays.switches.grid, overlays.rank_map
+        shape, grid, rank_map = overlays.shape, "grid" in overlays.switches, overlays.rank_map
         shown = shape, grid, rank_map, alpha
         if shown != self._shown:
             self._shown = shown

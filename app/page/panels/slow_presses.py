@@ -10,7 +10,7 @@ from weakref import WeakKeyDictionary
 
 from onpath.app.common.allowance import Allowance
 from onpath.app.common.error_log import log_error
-from onpath.app.page.build_queue import in_turn
+from onpath.app.scene.build_queue import in_turn
 
 if TYPE_CHECKING:
     import viser

@@ -10,7 +10,6 @@ import viser
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
-from onpath.app.page.overlays import Switches
 from onpath.app.page.panels.widgets import LabValue, Post, add_buttons, on_user_update, put_number
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.start import BOUNDS
@@ -39,17 +38,17 @@ class StartPanel:
         words: Words,
         post: Post,
         first: PageSnapshot,
-        switches: Switches,
+        switches: set[str],
     ) -> None:
         self._start = LabValue(post)
         with gui.add_folder(words("start.title"), expand_by_default=False):
             seen = gui.add_checkbox(
-                words("start.show"), switches.start, hint=words("start.show_hint")
+                words("start.show"), "start" in switches, hint=words("start.show_hint")
             )
             self._numbers = {name: self._add(gui, words, name) for name in UNITS}
             commands = {words("start.reset"): c.Reset(), words("start.default"): c.StartOnPath()}
             add_buttons(gui, "", commands, post)
-        on_user_update(seen, lambda on: setattr(switches, "start", on))
+        on_user_update(seen, lambda on: (switches.add if on else switches.discard)("start"))
         for name, handle in self._numbers.items():
             on_user_update(handle, partial(self._change, name))
         self.follow(first)

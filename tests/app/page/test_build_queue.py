@@ -14,11 +14,11 @@ from onpath.app.exports import exporter
 from onpath.app.lab import commands as c
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
-from onpath.app.page import build_queue
-from onpath.app.page.build_queue import LONG, REST, BuildLock
 from onpath.app.page.page import Page
 from onpath.app.page.panels import dialog
 from onpath.app.page.panels.keys import Keys
+from onpath.app.scene import build_queue
+from onpath.app.scene.build_queue import LONG, REST, BuildLock
 from onpath.app.server.lab_server import LabServer
 from onpath.lessons.words import ENGLISH, Words
 from tests.support.own_socket import feeds

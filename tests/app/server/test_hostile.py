@@ -34,7 +34,7 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.typing import Subprotocol
 
 from onpath.app.lab.loops.loop_cache import LoopCache
-from onpath.app.page.build_queue import in_turn
+from onpath.app.scene.build_queue import in_turn
 from onpath.app.server.arrivals import PAGE_KEY
 from onpath.app.server.lab_server import LabServer
 from onpath.app.server.server_options import ServerOptions

@@ -7,7 +7,6 @@ work on a teacher's page that shows a student's lab.
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable
-from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 import viser
@@ -28,31 +27,6 @@ from onpath.models.control.rank_test import RankGrid
 from onpath.models.systems.robots import Robot
 
 Node = TypeVar("Node", RobotLabels, TubeNodes, PlaneNodes, ErrorNodes, MassNodes, MarkNodes)
-
-
-@dataclass(slots=True)
-class Switches:
-    """Which drawings the user has switched on; kept while a page is rebuilt.
-
-    Attributes:
-        labels: angles, lengths and axes of the robots.
-        tube: the tube around the path.
-        grid: curves of constant θ and of constant ξ.
-        rank: the rank test as a map.
-        errors: both errors, to the timetable's point and to the path, as arrows.
-        mass: the ellipse of the effective mass at the end-points.
-        zone: the shading of the singular zone.
-        start: the start of the next run, which can be dragged.
-    """
-
-    labels: bool = False
-    tube: bool = False
-    grid: bool = False
-    rank: bool = False
-    errors: bool = False
-    mass: bool = False
-    zone: bool = False
-    start: bool = False
 
 
 class Drawn(Generic[Node]):
@@ -86,7 +60,7 @@ class Overlays:
         scene: the client's scene, without earlier overlays.
         stage: where the robots stand.
         robot: their model.
-        switches: which drawings to show; set by other objects.
+        switches: names of the drawings to show, among `SWITCHES`; changed by other objects.
         submit: runs a function in another thread.
         is_narrow: whether the page is so narrow that letters must be larger.
 
@@ -100,7 +74,7 @@ class Overlays:
         scene: viser.SceneApi,
         stage: Stage,
         robot: Robot,
-        switches: Switches,
+        switches: set[str],
         submit: Submit,
         is_narrow: bool = False,
     ) -> None:
@@ -145,7 +119,7 @@ class Overlays:
         self._follow_marks()
 
     def _follow_labels(self, snapshot: PageSnapshot) -> None:
-        if not self.switches.labels:
+        if "labels" not in self.switches:
             self._labels.remove()
             return
         self._labels.show(
@@ -160,7 +134,7 @@ class Overlays:
         )
 
     def _follow_tube(self, snapshot: PageSnapshot) -> None:
-        fill, grid, path = self.switches.tube, self.switches.grid, snapshot.path
+        fill, grid, path = "tube" in self.switches, "grid" in self.switches, snapshot.path
         if fill or grid:
             self._shape.ask(path.version, lambda: tube_shape(self._robot, path))
         if (shape := self._shape.value) is None or not (fill or grid):
@@ -172,24 +146,24 @@ class Overlays:
             )
 
     def _follow_map(self, snapshot: PageSnapshot) -> None:
-        if self.switches.rank:
+        if "rank" in self.switches:
             parameters = parameters_of(snapshot)
             key = self._robot.plant(parameters).tobytes()
             self._map.ask(key, lambda: rank_picture(self.stage, self._robot, parameters))
-        if (picture := self._map.value) is None or not self.switches.rank:
+        if (picture := self._map.value) is None or "rank" not in self.switches:
             self._rank.remove()
         else:
             key = self._map.key
             self._rank.show(key, lambda: PlaneNodes(self._scene, "/show/rank", self.stage, picture))
 
     def _follow_errors(self, snapshot: PageSnapshot) -> None:
-        if self.switches.errors:
+        if "errors" in self.switches:
             self._errors.show(True, lambda: ErrorNodes(self._scene, self.stage, snapshot.motion))
         else:
             self._errors.remove()
 
     def _follow_mass(self, snapshot: PageSnapshot) -> None:
-        if not self.switches.mass:
+        if "mass" not in self.switches:
             self._mass.remove()
             return
         motion, parameters = snapshot.motion, parameters_of(snapshot)

@@ -19,10 +19,10 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.snapshots.snapshot import END, MARKER
 from onpath.app.lab.snapshots.take_snapshot import take_motion, take_page_snapshot
-from onpath.app.page.overlays import Overlays, Switches
 from onpath.app.page.panels.show_panel import SWITCHES, rank_legend, tube_numbers
 from onpath.app.scene.arrows import SHORTEST
 from onpath.app.scene.error_nodes import ErrorNodes
+from onpath.app.scene.overlays import Overlays
 from onpath.app.scene.plane_picture import map_corners
 from onpath.app.scene.rank_nodes import largest, map_picture
 from onpath.app.scene.robot_labels import RobotLabels
@@ -69,7 +69,7 @@ class Shown:
         run(self.lab, 0.1)
         robot, self.messages = self.lab.simulation.robot, list[Any]()
         stage = stage_of(robot)
-        self.overlays = Overlays(scene, stage, robot, Switches(), lambda work: work())
+        self.overlays = Overlays(scene, stage, robot, set[str](), lambda work: work())
 
     def follow(self) -> list[str]:
         """Names of the messages by which the scene follows the lab."""
@@ -107,10 +107,10 @@ def test_a_switch_draws_and_removes_and_a_still_lab_sends_nothing_more(
     shown: Shown, name: str
 ) -> None:
     do(shown.lab, c.SetRunning(False))
-    setattr(shown.overlays.switches, name, True)
+    shown.overlays.switches.add(name)
     assert shown.follow()
     assert shown.follow() == []
-    setattr(shown.overlays.switches, name, False)
+    shown.overlays.switches.remove(name)
     assert set(shown.follow()) == {"RemoveSceneNodeMessage"}
     assert shown.follow() == []
 
@@ -176,11 +176,11 @@ def test_the_arrows_are_as_long_as_the_errors_that_they_stand_for(shown: Shown) 
 @ENTRIES
 def test_only_labels_move_with_the_robots(shown: Shown) -> None:
     switches = shown.overlays.switches
-    switches.tube = switches.grid = switches.rank = True
+    switches |= {"tube", "grid", "rank"}
     shown.follow()
     run(shown.lab, 0.2)
     assert shown.follow() == []
-    switches.labels = True
+    switches.add("labels")
     shown.follow()
     run(shown.lab, 0.2)
     moves = {"SetPositionMessage"}
@@ -195,7 +195,7 @@ def test_only_labels_move_with_the_robots(shown: Shown) -> None:
 def test_a_path_makes_the_tube_anew_and_a_parameter_of_the_plant_the_map(shown: Shown) -> None:
     do(shown.lab, c.SetRunning(False))
     switches, overlays = shown.overlays.switches, shown.overlays
-    switches.tube = switches.rank = True
+    switches |= {"tube", "rank"}
     shown.follow()
     tube, rank = overlays.shape, overlays.rank_map
     do(shown.lab, c.Set("K1", 350.0))
