@@ -328,7 +328,7 @@ class Tab:
             return True
         column, version = page._context.text.column, self.lab.lessons.version
         told = column is not None and column.version == version and bool(column.message)
-        return told and page._built == (page_key(self.lab),)
+        return told and page._built[0] == page_key(self.lab)
 
     def wait_until_built(self) -> None:
         """Return when the browser has the whole page; a button of the page before does nothing."""
