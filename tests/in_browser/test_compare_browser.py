@@ -22,8 +22,8 @@ TABLE = "table:has-text('largest force')"
 def test_laws_are_compared_while_the_lab_goes_on(browser: Browser, server: LabServer) -> None:
     context = browser.new_context(viewport={"width": 1280, "height": 800})
     tab = Tab(server, context, draws=False)
-    tab.open("Compare laws")
-    tab.press("Compare")
+    tab.press("Compare laws…")
+    tab.button("Compare").click()
     before = tab.simulation.time
     rows = tab.page.locator(f"{TABLE} tbody tr")
     expect(rows).to_have_count(3, timeout=60_000)

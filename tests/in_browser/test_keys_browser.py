@@ -10,7 +10,7 @@ import pytest
 
 pytest.importorskip("playwright")
 
-from playwright.sync_api import Browser
+from playwright.sync_api import Browser, expect
 from viser import _messages
 
 from onpath.app.lab import commands as c
@@ -33,26 +33,26 @@ TOUCH = {"viewport": {"width": 390, "height": 844}, "has_touch": True}
 
 @contextmanager
 def opened(browser: Browser, server: LabServer, place: str, **options: object) -> Iterator[Tab]:
-    """A tab in the free lab, or in a lesson with all controls shown."""
+    """A tab in the free lab, or in a lesson."""
     context = browser.new_context(**{"viewport": {"width": 1280, "height": 800}, **options})  # type: ignore[arg-type]
     tab = Tab(server, context, draws=False)
     if place == "lesson":
         tab.ask(c.OpenLesson(LESSON))
         tab.page.get_by_role("heading", name="Two robots, one circle").wait_for()
-        if not options:
-            tab.button("Expand column").click()  # folded, since this step needs no control
-            tab.page.get_by_role("tab", name="All controls").click()
     yield tab
     assert tab.errors == []
     context.close()
 
 
-PLACES = "lab", pytest.param("lesson", marks=pytest.mark.thorough)
+@pytest.fixture(scope="module")
+def shared(browser: Browser, server: LabServer) -> Iterator[Tab]:
+    with opened(browser, server, "lab") as tab:
+        yield tab
 
 
-@pytest.fixture(scope="module", params=PLACES)
-def shared(request: pytest.FixtureRequest, browser: Browser, server: LabServer) -> Iterator[Tab]:
-    with opened(browser, server, request.param) as tab:
+@pytest.fixture(scope="module")
+def read(browser: Browser, server: LabServer) -> Iterator[Tab]:
+    with opened(browser, server, "lesson") as tab:
         yield tab
 
 
@@ -101,9 +101,18 @@ def settled_camera(tab: Tab) -> np.ndarray:
 # The camera.
 
 
-@pytest.mark.parametrize("opposite", [False, True])
-def test_no_key_of_lab_or_lesson_moves_the_camera(tab: Tab, opposite: bool) -> None:
+@pytest.mark.parametrize("place", ["tab", "read"])
+def test_no_key_of_lab_or_lesson_moves_the_camera(
+    request: pytest.FixtureRequest, place: str
+) -> None:
     """Keys that could move it in opposite directions are not held down together."""
+    tab: Tab = request.getfixturevalue(place)
+    for opposite in (False, True):
+        keys_do_not_move_the_camera(tab, opposite)
+
+
+def keys_do_not_move_the_camera(tab: Tab, opposite: bool) -> None:
+    tab.blur()
     tab.ask(c.SetRunning(False))
     pressed = [
         ("Control+" if key.control else "") + NAMES.get(key.hotkey, key.hotkey.lower())
@@ -145,20 +154,18 @@ def test_the_view_is_reset_by_a_key_and_by_a_button(tab: Tab) -> None:
     tab.page.keyboard.press("Home")
     wait_for(lambda: np.allclose(camera(tab), placed, atol=1e-4))
     turn_the_view(tab)
-    tab.button("Reset view").first.click()
+    tab.open("View")
+    tab.button("Reset view").click()
     wait_for(lambda: np.allclose(camera(tab), placed, atol=1e-4))
     assert tab.lab.asked == asked  # nobody else who looks at this lab notices
 
 
-@pytest.mark.parametrize("place", PLACES)
-def test_the_view_is_reset_on_a_phone(browser: Browser, server: LabServer, place: str) -> None:
-    with opened(browser, server, place, **TOUCH) as tab:
+def test_the_view_is_reset_on_a_phone(browser: Browser, server: LabServer) -> None:
+    with opened(browser, server, "lesson", **TOUCH) as tab:
         placed = settled_camera(tab)
         turn_the_view(tab)
-        if place == "lesson":
-            tab.page.locator("#op-column .turn").click()  # the controls instead of the text
-            tab.page.get_by_role("tab", name="All controls").click()
-        tab.button("Reset view").first.click()
+        tab.open("View")
+        tab.button("Reset view").click()
         wait_for(lambda: np.allclose(camera(tab), placed, atol=1e-4))
 
 
@@ -194,54 +201,51 @@ def test_keys_move_the_handle_that_looks_back(tab: Tab) -> None:
     wait_for(lambda: lab.simulation.viewing is None)
 
 
-@pytest.mark.parametrize("key", ["Space", "Enter"])
-def test_a_focused_button_is_pressed_and_nothing_else(tab: Tab, key: str) -> None:
-    before = tab.lab.asked
-    tab.focus(tab.button("Hold both back").first)
-    tab.page.keyboard.press(key)
-    wait_for(lambda: len(tab.simulation.forces.held) == 2)
-    assert asked_since(tab, before) == 1 and tab.simulation.running
+def test_a_focused_button_is_pressed_and_nothing_else(tab: Tab) -> None:
+    for key in ("Space", "Enter"):
+        before, held = tab.lab.asked, bool(tab.simulation.forces.held)
+        tab.focus(tab.page.locator("#op-strip .brake > button"))
+        tab.page.keyboard.press(key)
+        wait_for(lambda held=held: bool(tab.simulation.forces.held) is not held)
+        assert asked_since(tab, before) == 1 and tab.simulation.running
 
 
-def test_letters_still_work_on_buttons_sliders_and_boxes_to_tick(tab: Tab) -> None:
-    lab = tab.lab
-    tab.button("Hold both back").first.click()
-    wait_for(lambda: lab.simulation.forces.held)
-    for control in (None, tab.slider("K1"), tab.page.get_by_label("Copy to both")):
+def test_letters_still_work_on_buttons_sliders_and_switches(tab: Tab) -> None:
+    """Also those of keyboards with another alphabet."""
+    lab, keyboard = tab.lab, tab.page.keyboard
+    typist = tab.page.context.new_cdp_session(tab.page)
+    slider, switch = tab.slider("K1"), tab.switch("Copy to both")
+    for control in (None, slider, switch):
         if control is not None:
+            tab.row("K1" if control is slider else "Copy to both")  # opens its group
             tab.focus(control)
         held = bool(lab.simulation.forces.held)
-        tab.page.keyboard.press("h")
+        keyboard.press("h")
         wait_for(lambda held=held: bool(lab.simulation.forces.held) is not held)
-        tab.page.keyboard.press("d")
+        keyboard.press("d")
         wait_for(lambda: lab.simulation.forces.hands)
-        tab.page.keyboard.press("x")
+        keyboard.press("x")
         wait_for(lambda: not lab.simulation.forces.hands)
-
-
-@pytest.mark.parametrize("hold", ["р", "η", "ي", "ㅗ"])
-def test_letters_work_on_keyboards_with_another_alphabet(tab: Tab, hold: str) -> None:
-    typist = tab.page.context.new_cdp_session(tab.page)
-    for control in (None, tab.slider("K1"), tab.page.get_by_label("Copy to both")):
-        if control is not None:
-            tab.focus(control)
-        held = bool(tab.simulation.forces.held)
-        for kind in ("keyDown", "keyUp"):
-            typist.send("Input.dispatchKeyEvent", {"type": kind, "key": hold, "code": "KeyH"})
-        wait_for(lambda held=held: bool(tab.simulation.forces.held) is not held)
+        for hold in ("р", "η", "ي", "ㅗ"):
+            held = bool(lab.simulation.forces.held)
+            for kind in ("keyDown", "keyUp"):
+                typist.send("Input.dispatchKeyEvent", {"type": kind, "key": hold, "code": "KeyH"})
+            wait_for(lambda held=held: bool(lab.simulation.forces.held) is not held)
 
 
 def test_what_is_typed_into_a_field_does_nothing_else(tab: Tab) -> None:
     lab = tab.lab
-    tab.open("Keep and share")
-    before, step = lab.asked, lab.lessons.index
-    for field in (tab.field("Share code"), tab.number("K1")):
-        tab.focus(field)
-        for key in ("d", "x", "h", "w", "r", "g", "u", "PageDown", "PageUp", "Home"):
-            tab.page.keyboard.press(key)
-    assert tab.field("Share code").input_value() == "dxhwrgu"
-    assert asked_since(tab, before) == 0 and lab.simulation.running and lab.lessons.index == step
-    tab.field("Share code").fill("")
+    before, box = lab.asked, tab.number("K1")
+    tab.focus(box)
+    for key in ("d", "x", "h", "w", "r", "g", "u", "Home", "Control+k"):
+        tab.page.keyboard.press(key)
+    expect(tab.page.get_by_role("dialog")).to_be_visible()  # the search
+    tab.page.keyboard.type("rhx")
+    tab.page.keyboard.press("Escape")
+    expect(box).to_have_value("dxhwrgu")
+    tab.focus(box)
+    tab.page.keyboard.press("Escape")
+    assert asked_since(tab, before) == 0 and lab.simulation.running
 
 
 def test_going_on_is_reported_and_undone_by_key_and_button(tab: Tab) -> None:

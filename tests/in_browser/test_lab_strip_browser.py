@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import pytest
@@ -20,11 +21,7 @@ from tests.support.free_lab import fresh
 
 expect.set_options(timeout=WAIT * 1e3)
 WINDOWS = [(1280, 800), (1366, 768), (820, 1180), (390, 844)]
-CHARTED = [
-    pytest.param((1280, 800), marks=pytest.mark.thorough),
-    (390, 844),
-    pytest.param((844, 390), marks=pytest.mark.thorough),
-]
+CHARTED = [(390, 844), (1280, 800), (844, 390)]
 REMEMBER = """() => {
     const {prototype} = CanvasRenderingContext2D
     const {fillText, clearRect} = prototype
@@ -84,13 +81,15 @@ TOP = """() => {
 }"""
 """The highest point of the path in the picture."""
 
-COVERED = """() => [...document.querySelectorAll("#op-strip button, #root button")].filter(each => {
+COVERED = """() => [
+    ...document.querySelectorAll(":is(#op-strip, #op-head, #op-panel) button"),
+].filter(each => {
     const box = each.getBoundingClientRect()
     const [x, y] = [(box.left + box.right) / 2, (box.top + box.bottom) / 2]
     if (!each.checkVisibility({visibilityProperty: true})) return false
     if (x < 0 || y < 0 || x > innerWidth || y > innerHeight) return false
     const found = document.elementFromPoint(x, y)
-    const shown = each.closest(".mantine-ScrollArea-viewport")?.getBoundingClientRect()
+    const shown = each.closest("#op-panel .body")?.getBoundingClientRect()
     if (shown && (y < shown.top || y > shown.bottom)) return false
     return !each.contains(found)
 }).map(each => each.textContent)"""
@@ -179,42 +178,43 @@ def test_a_lost_connection_is_said_and_comes_back(tab: Tab) -> None:
     wait_for(lambda: tab.simulation.forces.held)
 
 
-@pytest.fixture(params=WINDOWS, ids=lambda size: f"{size[0]}x{size[1]}")
-def shaped(browser: Browser, server: LabServer, request: pytest.FixtureRequest) -> Iterator[Tab]:
-    width, height = request.param
-    context = fresh(browser, viewport={"width": width, "height": height})
-    yield Tab(server, context, draws=False)
-    context.close()
-
-
-def test_everything_fits_into_windows_of_all_shapes(shaped: Tab) -> None:
-    """The stage above, the strip below, all buttons inside and apart from the chart."""
-    expect(shaped.page.locator("#op-strip")).to_be_visible()
-    size = shaped.page.viewport_size
-    assert size is not None
-    wait_for(lambda: shaped.page.evaluate(BOXES)["scene"]["bottom"] <= size["height"] - 100)
-    boxes = shaped.page.evaluate(BOXES)
-    assert boxes["strip"]["top"] >= boxes["scene"]["bottom"] - 1
-    assert boxes["strip"]["bottom"] <= size["height"] + 1 and boxes["width"] <= size["width"]
-    least = 0.5 if size["width"] > size["height"] else 0.34
-    assert boxes["scene"]["height"] > least * size["height"]
-    assert shaped.page.evaluate(COVERED) == []
-    assert boxes["chart"]["height"] > 70 and boxes["chart"]["bottom"] <= size["height"]
-    assert len(boxes["buttons"]) >= 6
-    for button in boxes["buttons"]:
-        assert button["left"] >= 0 and button["right"] <= size["width"]
-        assert button["height"] >= 30 and button["bottom"] <= boxes["chart"]["top"] + 1
-    for lens in boxes["lenses"]:
-        assert lens["width"] > 60 and lens["left"] >= 0 and lens["right"] <= size["width"]
-
-
-@pytest.fixture(params=CHARTED, ids=lambda size: f"{size[0]}x{size[1]}")
-def charted(browser: Browser, server: LabServer, request: pytest.FixtureRequest) -> Iterator[Tab]:
-    width, height = request.param
-    context = fresh(browser, viewport={"width": width, "height": height})
+@contextmanager
+def opened(browser: Browser, server: LabServer, **options: Any) -> Iterator[Tab]:
+    """A tab that remembers what is written on its charts."""
+    context = fresh(browser)
     context.add_init_script(f"({REMEMBER})()")
-    yield Tab(server, context, draws=False)
+    tab = Tab(server, context, draws=False, **options)
+    yield tab
+    assert tab.errors == []
     context.close()
+
+
+def give(tab: Tab, size: tuple[int, int]) -> None:
+    """Give the window a size."""
+    tab.page.set_viewport_size({"width": size[0], "height": size[1]})
+    wait_for(tab._framed)
+    tab.page.evaluate(THREE_FRAMES)
+
+
+def test_everything_fits_into_windows_of_all_shapes(browser: Browser, server: LabServer) -> None:
+    """The stage above, the strip below, all buttons inside and apart from the chart."""
+    with opened(browser, server) as tab:
+        for width, height in WINDOWS:
+            give(tab, (width, height))
+            expect(tab.page.locator("#op-strip")).to_be_visible()
+            wait_for(lambda h=height: tab.page.evaluate(BOXES)["scene"]["bottom"] <= h - 100)
+            boxes = tab.page.evaluate(BOXES)
+            assert boxes["strip"]["top"] >= boxes["scene"]["bottom"] - 1
+            assert boxes["strip"]["bottom"] <= height + 1 and boxes["width"] <= width
+            assert boxes["scene"]["height"] > (0.5 if width > height else 0.34) * height
+            assert tab.page.evaluate(COVERED) == []
+            assert boxes["chart"]["height"] > 70 and boxes["chart"]["bottom"] <= height
+            assert len(boxes["buttons"]) >= 6
+            for button in boxes["buttons"]:
+                assert button["left"] >= 0 and button["right"] <= width
+                assert button["height"] >= 30 and button["bottom"] <= boxes["chart"]["top"] + 1
+            for lens in boxes["lenses"]:
+                assert lens["width"] > 60 and lens["left"] >= 0 and lens["right"] <= width
 
 
 def height_of(tab: Tab) -> float:
@@ -223,36 +223,54 @@ def height_of(tab: Tab) -> float:
     return box["height"]
 
 
-def test_nothing_in_the_strip_lies_on_something_else(charted: Tab) -> None:
+def test_nothing_in_the_strip_lies_on_something_else(browser: Browser, server: LabServer) -> None:
     """While robots are free, held, pulled, and in the past, where the chart stays as high."""
-    page = charted.page
+    with opened(browser, server) as tab:
+        for size in CHARTED:
+            give(tab, size)
+            _is_tidy_throughout(tab)
+
+
+def _is_tidy_throughout(tab: Tab) -> None:
+    page = tab.page
 
     def is_tidy() -> None:
         for _ in range(3):
-            charted.elapse(0.4)
+            tab.elapse(0.4)
             page.evaluate(THREE_FRAMES)
             assert page.evaluate(COLLISIONS) == []
 
+    tab.ask(c.SetRunning(True))
     is_tidy()
-    charted.ask(c.Hold(True))
+    tab.ask(c.Hold(True))
     is_tidy()
-    charted.ask(c.Hold(False))
+    tab.ask(c.Hold(False))
     page.keyboard.press("d")
     is_tidy()
     page.keyboard.press("x")
-    high = height_of(charted)
+    high = height_of(tab)
     assert high > 80
-    charted.ask(c.LookBack(1.0))
-    expect(charted.button("Go on from here")).to_be_visible()
+    tab.ask(c.LookBack(1.0))
+    expect(tab.button("Go on from here")).to_be_visible()
     page.evaluate(THREE_FRAMES)
     assert page.evaluate(COLLISIONS) == []
-    assert height_of(charted) == pytest.approx(high, abs=1)
+    assert height_of(tab) == pytest.approx(high, abs=1)
 
 
-def test_nothing_lies_on_a_board_and_it_stays_high_enough_to_be_read(charted: Tab) -> None:
-    page = charted.page
-    lesson = next(iter(charted.lab.lessons.course.lessons))
-    charted.ask(c.OpenLesson(lesson), c.TakeStep(lesson, 0), c.TakeStep(lesson, 1))
+def test_nothing_lies_on_a_board_and_it_stays_high_enough_to_be_read(
+    browser: Browser, server: LabServer
+) -> None:
+    with opened(browser, server) as tab:
+        lesson = next(iter(tab.lab.lessons.course.lessons))
+        for size in CHARTED:
+            give(tab, size)
+            tab.ask(c.OpenLesson(lesson), c.TakeStep(lesson, 0), c.TakeStep(lesson, 1, again=True))
+            tab.wait_until_built()
+            _board_is_tidy(tab)
+
+
+def _board_is_tidy(tab: Tab) -> None:
+    page = tab.page
     board = page.locator(".plot.drawn")
     board.scroll_into_view_if_needed()
     box = board.bounding_box()
@@ -264,31 +282,28 @@ def test_nothing_lies_on_a_board_and_it_stays_high_enough_to_be_read(charted: Ta
     page.mouse.up()
     page.evaluate(THREE_FRAMES)
     assert page.evaluate(COLLISIONS) == []
-    charted.press("Commit to this prediction")
-    expect(charted.button("Let it happen")).to_be_visible()
+    tab.press("Commit to this prediction")
+    expect(tab.button("Let it happen")).to_be_visible()
     page.evaluate(THREE_FRAMES)
     assert page.evaluate(COLLISIONS) == []
     after = page.locator(".plot:visible").last.bounding_box()
     assert after is not None and after["height"] > 110
 
 
-@pytest.mark.parametrize("size", CHARTED, ids=lambda size: f"{size[0]}x{size[1]}")
 def test_an_invitation_covers_neither_robots_nor_the_strip(
-    browser: Browser, server: LabServer, size: tuple[int, int]
+    browser: Browser, server: LabServer
 ) -> None:
-    context = fresh(browser, viewport={"width": size[0], "height": size[1]})
-    context.add_init_script(f"({REMEMBER})()")
-    newcomer = Tab(server, context, draws=False, newcomer=True)
-    invitation = newcomer.page.locator("#op-invitation")
-    expect(invitation).to_be_visible()
-    newcomer.ask(c.Hold(True))
-    expect(invitation).to_contain_text("torn off")
-    newcomer.page.evaluate(THREE_FRAMES)
-    box, boxes = invitation.bounding_box(), newcomer.page.evaluate(BOXES)
-    assert box is not None and boxes["chart"]["height"] > 70
-    bottom = box["y"] + box["height"]
-    if bottom > newcomer.page.evaluate(TOP):  # there is no room above the robots
-        assert box["y"] >= boxes["scene"]["bottom"] - 1
-        assert bottom <= min(button["top"] for button in boxes["buttons"])
-    assert newcomer.page.evaluate(COLLISIONS) == []
-    context.close()
+    with opened(browser, server, newcomer=True) as tab:
+        invitation = tab.page.locator("#op-invitation")
+        expect(invitation).to_be_visible()
+        tab.ask(c.Hold(True))
+        expect(invitation).to_contain_text("torn off")
+        for size in CHARTED:
+            give(tab, size)
+            box, boxes = invitation.bounding_box(), tab.page.evaluate(BOXES)
+            assert box is not None and boxes["chart"]["height"] > 70
+            bottom = box["y"] + box["height"]
+            if bottom > tab.page.evaluate(TOP):  # there is no room above the robots
+                assert box["y"] >= boxes["scene"]["bottom"] - 1
+                assert bottom <= min(button["top"] for button in boxes["buttons"])
+            assert tab.page.evaluate(COLLISIONS) == []

@@ -23,7 +23,6 @@ def test_a_profile_is_chosen_and_the_poles_tell_their_place(
 ) -> None:
     context = browser.new_context(viewport={"width": 1280, "height": 800})
     tab = Tab(server, context, draws=False)
-    tab.open("Advanced")
     tab.choose("Speed profile", "stop and go")
     wait_for(lambda: tab.simulation.parameters.speed_profile == "stop_and_go")
     speeds = set[bool]()

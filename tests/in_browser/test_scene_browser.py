@@ -62,14 +62,14 @@ def hand_targets(lab: Lab) -> dict[str, np.ndarray]:
 
 
 def test_without_copy_only_the_robot_in_hand_is_pulled(tab: Tab) -> None:
-    tab.page.get_by_label("Copy to both").uncheck()
+    tab.switch("Copy to both").uncheck()
     wait_for(lambda: not tab.simulation.settings.copy)
     stop_between_control_points(tab)
     start = tab.placed(TRACKER, tab.tip(TRACKER))
     with tab.dragging(start, (start[0] - 30, start[1])):
         wait_for(lambda: tab.simulation.forces.hands)
         assert list(tab.simulation.forces.hands) == [TRACKER]
-    tab.page.get_by_label("Copy to both").check()
+    tab.switch("Copy to both").check()
     wait_for(lambda: tab.simulation.settings.copy)
 
 
@@ -100,8 +100,7 @@ def test_dragging_a_control_point_bends_the_path_and_blends_in(tab: Tab) -> None
 
 
 def test_drawing_a_path_freehand(tab: Tab) -> None:
-    tab.open("Path editor")
-    tab.press("Draw freehand")
+    tab.press("Draw")
     tab.settle()
     angle = np.linspace(0, 2 * np.pi, 18)
     stroke = 0.045 * np.column_stack([np.cos(angle), 0.8 * np.sin(angle)])

@@ -2,57 +2,58 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING
-
 import pytest
 
-from tests.support.free_lab import fresh
+pytest.importorskip("playwright")
 
-if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Locator, Page
+from playwright.sync_api import expect
 
-    from onpath.app.server.lab_server import LabServer
-    from tests.support.browser import Tab
+from tests.support.axe import violations
+from tests.support.browser import Tab
 
-SHEETS = ("Lessons", "Help and keys", "Language, display")
+pytestmark = pytest.mark.thorough
 
-
-@pytest.fixture(scope="module")
-def ours(browser: Browser, server: LabServer) -> Iterator[Tab]:
-    """A tab whose controls are our own."""
-    from tests.support.browser import Tab
-
-    context = fresh(browser)
-    tab = Tab(server, context, draws=False, path="/?panel=ours&fixedDpr=0.1&then=")
-    tab.page.get_by_role("banner").wait_for()
-    tab.page.get_by_label("Path", exact=True).get_by_role("radio").first.wait_for()
-    yield tab
-    assert tab.errors == []
-    context.close()
+SHEETS = (
+    *("Lessons", "Help and keys", "Language, display"),
+    *("About the laws", "Compare laws…", "Keep and share", "File…"),
+)
+FOREIGN = """() => [...document.querySelectorAll("#root *")].filter(each =>
+    each.matches("button, input, select, textarea, a, [tabindex='0']")
+    && each.checkVisibility({visibilityProperty: true}))
+    .map(each => each.outerHTML.slice(0, 200))"""
+"""Controls of viser's that can be seen, or reached by Tab."""
 
 
-def dialog(page: Page) -> Locator:
-    return page.get_by_role("dialog")
-
-
-@pytest.mark.thorough
-@pytest.mark.parametrize("name", SHEETS)
-def test_a_sheet_closes_by_escape_cross_and_beside_and_gives_the_focus_back(
-    ours: Tab, name: str
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_a_sheet_can_be_read_and_closes_by_escape_cross_and_beside_and_gives_the_focus_back(
+    tab: Tab, scheme: str
 ) -> None:
-    page = ours.page
-    button = page.get_by_role("banner").get_by_role("button", name=name)
+    page = tab.page
+    page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
+    dialog = page.get_by_role("dialog")
     closings = (
         lambda: page.keyboard.press("Escape"),
-        lambda: dialog(page).get_by_role("button", name="Close").click(),
+        lambda: dialog.get_by_role("button", name="Close", exact=True).click(),
         lambda: page.mouse.click(5, 300),
     )
-    for close in closings:
-        button.focus()
-        page.keyboard.press("Enter")
-        dialog(page).wait_for()
-        assert page.evaluate("document.querySelector('dialog').contains(document.activeElement)")
-        close()
-        dialog(page).wait_for(state="detached")
-        assert button.evaluate("button => button === document.activeElement")
+    for name in SHEETS:
+        button, asked = tab.button(name), tab.lab.asked
+        for close in closings:
+            button.focus()
+            page.keyboard.press("Enter")
+            dialog.wait_for()
+            assert dialog.evaluate("dialog => dialog.contains(document.activeElement)")
+            if close is closings[0]:
+                assert violations(tab) == [], name
+            close()
+            dialog.wait_for(state="detached")
+            expect(button).to_be_focused()
+        assert tab.lab.asked == asked
+
+
+def test_no_control_of_viser_is_seen_or_reached(tab: Tab) -> None:
+    assert tab.page.evaluate(FOREIGN) == []
+    tab.page.evaluate("document.activeElement.blur()")
+    for _ in range(60):
+        tab.page.keyboard.press("Tab")
+        assert not tab.page.evaluate("document.activeElement.matches('#root *')")

@@ -36,8 +36,8 @@ def tab(browser: Browser, server: LabServer) -> Iterator[Tab]:
 
 
 def switch(tab: Tab, name: str) -> None:
-    """Click a checkbox."""
-    tab.page.get_by_label(name, exact=True).filter(visible=True).click()
+    """Press a switch."""
+    tab.switch(name).click()
 
 
 def drawn(tab: Tab) -> set[str]:
@@ -57,14 +57,14 @@ def share_of_scale(tab: Tab) -> float:
 
 def test_each_switch_draws_and_removes(tab: Tab) -> None:
     page = tab.page
-    tab.open("Show")
+    tab.open("View")
     for name in (
         "Labels, axes",
         "Tube",
         "Grid along and across the path",
         "Where the laws are defined",
     ):
-        expect(page.get_by_label(name, exact=True)).not_to_be_checked()
+        expect(tab.switch(name)).not_to_be_checked()
     assert drawn(tab) == set() and share_of_scale(tab) < 0.01
 
     switch(tab, "Where the laws are defined")
@@ -88,13 +88,13 @@ def test_each_switch_draws_and_removes(tab: Tab) -> None:
     tab.ask(c.SetLanguage("de"))  # the page is built anew, and shows the same
     wait_for(tab.is_built)
     wait_for(lambda: drawn(tab) == set(NODES))
-    tab.open("Zeigen")
+    tab.open("Ansicht")
     for name in (
         "Namen, Achsen",
         "Schlauch",
         "Netz längs und quer zur Bahn",
         "Wo die Gesetze definiert sind",
     ):
-        expect(page.get_by_label(name, exact=True)).to_be_checked()
+        expect(tab.switch(name)).to_be_checked()
         switch(tab, name)
     wait_for(lambda: drawn(tab) == set() and share_of_scale(tab) < 0.01)

@@ -127,19 +127,18 @@ def test_question_board_and_commit_are_seen_together_and_next_always(
     context.close()
 
 
-def test_on_a_telephone_the_column_makes_room_for_the_controls_of_a_step(
+def test_on_a_telephone_a_step_s_controls_are_in_its_card(
     browser: Browser, server: LabServer
 ) -> None:
     context = browser.new_context(viewport={"width": 390, "height": 844}, has_touch=True)
     tab = Tab(server, context, draws=False)
     tab.ask(TakeStep(LESSON, 6))
     wait_for(lambda: is_seen(tab, 6))
-    turn = tab.page.locator("#op-column").get_by_role("button", name="Controls")
-    turn.tap()
-    wait_for(lambda: not is_seen(tab, 6))
-    expect(tab.slider("K1")).to_be_in_viewport()
-    turn.tap()
-    wait_for(lambda: is_seen(tab, 6))
+    tab.wait_until_built()
+    slider = tab.slider("K1")
+    slider.scroll_into_view_if_needed()
+    expect(slider).to_be_in_viewport()
+    expect(tab.button("Hold both back")).to_be_in_viewport()
     context.close()
 
 

@@ -12,7 +12,7 @@ import pytest
 
 pytest.importorskip("playwright")
 
-from playwright.sync_api import Browser, Download, Page
+from playwright.sync_api import Browser, Download, Page, expect
 
 from onpath.app.server.lab_server import LabServer
 from onpath.models.control.sides import LEFT, RIGHT
@@ -27,9 +27,9 @@ PLAYED = """seconds => [...document.querySelectorAll("[role=slider]")].some(
 
 
 def download(tab: Tab, button: str) -> Download:
-    tab.open("Export")
+    tab.press("Keep and share")
     with tab.page.expect_download(timeout=30_000) as waiting:
-        tab.press(button)
+        tab.button(button).click()
     return waiting.value
 
 
@@ -87,8 +87,8 @@ def test_a_reload_comes_back_to_the_same_lab(other: Tab) -> None:
     assert other.lab is lab
     assert (lab.simulation.parameters.K1, lab.simulation.editor.design.name) == (150.0, "clover")
     wait_for(lambda: lab.simulation.time > before)
-    assert other.number("K1").input_value() == "150"
-    assert other.page.get_by_label("Path", exact=True).input_value() == "clover"
+    wait_for(lambda: other.value("K1") == 150.0)
+    expect(other.page.get_by_role("radio", name="clover", exact=True)).to_be_checked()
     assert len(other.server.server.get_clients()) == len(other._looked_at())
     wait_for(lambda: gc.collect() >= 0 and old() is None)
 

@@ -1,4 +1,4 @@
-"""Tests that every task of every lesson can be passed with mouse, keys and touch."""
+"""Tests that tasks are passed by touch; `test_course_browser.py` passes all with mouse and keys."""
 
 from __future__ import annotations
 
@@ -43,24 +43,18 @@ def cases(solutions: dict[str, dict[str, tuple[Gesture, ...]]]) -> list[tuple[st
 
 
 @contextmanager
-def opened(browser: Browser, server: LabServer, touch: bool) -> Iterator[Hands]:
-    """Open a student's tab."""
-    context = browser.new_context(viewport={"width": 1280, "height": 800}, has_touch=touch)
+def opened(browser: Browser, server: LabServer) -> Iterator[Hands]:
+    """Open the tab of a student with a touch screen."""
+    context = browser.new_context(viewport={"width": 1280, "height": 800}, has_touch=True)
     tab = Tab(server, context, draws=False)
-    yield Hands(tab, touch)
+    yield Hands(tab, touch=True)
     assert tab.errors == []
     context.close()
 
 
 @pytest.fixture(scope="module")
-def mouse(browser: Browser, server: LabServer) -> Iterator[Hands]:
-    with opened(browser, server, touch=False) as hands:
-        yield hands
-
-
-@pytest.fixture(scope="module")
 def finger(browser: Browser, server: LabServer) -> Iterator[Hands]:
-    with opened(browser, server, touch=True) as hands:
+    with opened(browser, server) as hands:
         yield hands
 
 
@@ -98,21 +92,14 @@ def test_every_task_of_every_lesson_has_gestures_here() -> None:
     assert set(cases(BY_TOUCH)) <= set(TASKS)
 
 
-@pytest.mark.parametrize(("lesson", "task"), cases(SOLUTIONS))
-def test_a_task_is_passed_with_mouse_and_keys(mouse: Hands, lesson: str, task: str) -> None:
-    do(mouse, lesson, task, SOLUTIONS[lesson][task])
-
-
 @pytest.mark.parametrize(("lesson", "task"), cases(BY_TOUCH))
 def test_a_task_is_passed_by_touch(finger: Hands, lesson: str, task: str) -> None:
     do(finger, lesson, task, BY_TOUCH[lesson][task])
 
 
-@pytest.mark.parametrize("by", ["mouse", "finger"])
-def test_the_ball_under_the_end_point_is_dragged(by: str, request: pytest.FixtureRequest) -> None:
+def test_the_ball_under_the_end_point_is_dragged(finger: Hands) -> None:
     """The first step of lesson 3 asks for it: the end-point rests on the ball at the right."""
-    hands: Hands = request.getfixturevalue(by)
-    tab, lab = hands.tab, hands.lab
+    hands, tab, lab = finger, finger.tab, finger.lab
     go_to(tab, "03-the-five-bar", 0)
     tab.elapse(2)  # both come to rest there
     end = lab.simulation.editor.design.points[-1] * 1e3
@@ -120,10 +107,9 @@ def test_the_ball_under_the_end_point_is_dragged(by: str, request: pytest.Fixtur
     DragBall((end[0], end[1]), (end[0] - 10, end[1] + 25))(hands)
 
 
-@pytest.mark.parametrize("touch", [False, True], ids=["mouse", "finger"])
-def test_a_curve_is_drawn_on_the_board(browser: Browser, server: LabServer, touch: bool) -> None:
+def test_a_curve_is_drawn_on_the_board(browser: Browser, server: LabServer) -> None:
     """In a tab of its own: a prediction counts as skipped once a later step has been opened."""
-    with opened(browser, server, touch) as hands:
+    with opened(browser, server) as hands:
         go_to(hands.tab, "01-path-or-timetable", 1)
         hands.tab.page.get_by_text("Draw in the chart with the mouse or a finger").wait_for()
         sketch(hands)

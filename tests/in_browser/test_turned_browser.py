@@ -13,27 +13,20 @@ from playwright.sync_api import Browser
 
 from onpath.app.lab import commands as c
 from onpath.app.scene.stage_catalogue import stage_of
-from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_server import LabServer
 from tests.support.browser import Tab, wait_for
 
 pytestmark = pytest.mark.thorough
 
-WIDE, UPRIGHT, DESK, TALL = (1180, 820), (820, 1180), (1280, 800), (1280, 1600)
+TURNS = [(1180, 820), (820, 1180), (1180, 820), (1280, 800), (1280, 1600), (1280, 800)]
 WINDOWS = [(640, 400), (844, 390), (1024, 768), (1180, 820), (1280, 800), (1366, 768), (1920, 1080)]
 LESSON = "01-path-or-timetable"
-SHEET = '.mantine-Paper-root[style*="bottom: 0"]'
+SHEET = "#op-panel.open"
 
 
-@pytest.fixture(params=[(WIDE, UPRIGHT, WIDE), (UPRIGHT, WIDE, UPRIGHT), (DESK, TALL, DESK)])
-def sizes(request: pytest.FixtureRequest) -> list[tuple[int, int]]:
-    return list(request.param)
-
-
-@pytest.fixture
-def tab(browser: Browser, server: LabServer, sizes: list[tuple[int, int]]) -> Iterator[Tab]:
-    width, height = sizes[0]
-    context = browser.new_context(viewport={"width": width, "height": height})
+@pytest.fixture(scope="module")
+def tab(browser: Browser, server: LabServer) -> Iterator[Tab]:
+    context = browser.new_context()
     tab = Tab(server, context, draws=False)
     yield tab
     assert tab.errors == []
@@ -71,45 +64,33 @@ def in_sight(tab: Tab) -> bool:
     return bool(inside and above and ((high - low) / free).max() > 0.75)
 
 
-@pytest.mark.parametrize("lesson", [False, True])
-def test_the_robots_stay_in_sight(tab: Tab, sizes: list[tuple[int, int]], lesson: bool) -> None:
-    if lesson:
-        tab.ask(c.OpenLesson(LESSON))
-    for width, height in sizes:
-        tab.page.set_viewport_size({"width": width, "height": height})
-        upright = width <= 0.8 * height
-        view = tab.display
-        assert isinstance(view, LabFeed)
-        wait_for(
-            lambda v=view, u=upright: (
-                (page := v.page) is not None and page.is_ready and page._narrow == u
+def test_the_robots_stay_in_sight_while_a_window_is_turned_and_stretched(tab: Tab) -> None:
+    for command in (c.CloseLesson(), c.OpenLesson(LESSON)):
+        tab.ask(command)
+        for width, height in TURNS:
+            tab.page.set_viewport_size({"width": width, "height": height})
+            wait_for(lambda: in_sight(tab), state=lambda: str(seen(tab)))
+            tab.ask(c.SetRunning(False))
+
+
+def test_the_robots_have_their_share_of_every_window(tab: Tab) -> None:
+    for step in (None, 0, 6):  # no lesson, and steps without and with controls
+        command = c.CloseLesson() if step is None else c.TakeStep(LESSON, step)
+        tab.ask(command, c.SetRunning(False))
+        tab.wait_until_built()
+        for width, height in WINDOWS:
+            tab.page.set_viewport_size({"width": width, "height": height})
+            least = 0.5 if step is not None and width < 1280 else 0.4
+            wait_for(
+                lambda w=width, part=least: tab._canvas()["width"] >= part * w,
+                state=lambda: str(tab._canvas()),
             )
-        )
-        wait_for(lambda u=upright: bool(tab.page.locator(SHEET).count()) == u)
-        wait_for(lambda: in_sight(tab), state=lambda: str(seen(tab)))
-        tab.ask(c.SetRunning(False))
-
-
-@pytest.mark.parametrize("step", [None, 0, 6])  # no lesson, and steps without and with controls
-def test_the_robots_have_their_share_of_every_window(
-    browser: Browser, server: LabServer, step: int | None
-) -> None:
-    tab = Tab(server, browser.new_context(), draws=False)
-    if step is not None:
-        tab.ask(c.TakeStep(LESSON, step), c.SetRunning(False))
-    for width, height in WINDOWS:
-        tab.page.set_viewport_size({"width": width, "height": height})
-        least = 0.5 if step is not None and width < 1280 else 0.4
-        wait_for(
-            lambda w=width, part=least: tab._canvas()["width"] >= part * w,
-            state=lambda: str(tab._canvas()),
-        )
-        wait_for(lambda: in_sight(tab), state=lambda: str(seen(tab)))
-        slider, low = tab.page.get_by_role("slider", name="K1 across"), height < 500
-        if step == 6 and not low:
-            wait_for(lambda s=slider: s.evaluate(IN_SIGHT))
-        if step is not None:
-            for each in (tab.page.locator("#op-column .open h2").first, tab.button("Next")):
-                wait_for(lambda each=each: each.evaluate(IN_SIGHT))
-    assert tab.errors == []
-    tab.page.context.close()
+            wait_for(lambda: in_sight(tab), state=lambda: str(seen(tab)))
+            if step == 6:
+                slider = tab.slider("K1")
+                slider.scroll_into_view_if_needed()
+                wait_for(lambda slider=slider: slider.evaluate(IN_SIGHT))
+                tab.page.locator("#op-column .open h2").first.scroll_into_view_if_needed()
+            if step is not None:
+                for each in (tab.page.locator("#op-column .open h2").first, tab.button("Next")):
+                    wait_for(lambda each=each: each.evaluate(IN_SIGHT))

@@ -71,17 +71,15 @@ def test_a_wall_is_placed_moved_turned_and_taken_away(tab: Tab) -> None:
         keyboard.press(key)
         wait_for(lambda before=before: simulation.wall is not before)
         assert wall_of(tab).angle - before.angle == pytest.approx(turn)
-    tab.open("Wall")
     tab.enter("Wall y2", "35")
     wait_for(lambda: wall_of(tab).z2 == pytest.approx(0.035))
-    tab.page.get_by_label("A wall in the way").uncheck()
+    tab.switch("A wall in the way").uncheck()
     wait_for(lambda: simulation.wall is None)
-    expect(tab.number("Wall y2")).to_be_hidden()
+    expect(tab.page.get_by_role("slider", name="Wall y2")).to_have_count(0)
 
 
 def test_the_force_on_the_wall_is_shown(tab: Tab) -> None:
-    tab.open("Wall")
-    tab.page.get_by_label("A wall in the way").check()
+    tab.switch("A wall in the way").check()
     wait_for(lambda: tab.simulation.wall is not None)
     tab.elapse(3.0)
     shown = tab.page.get_by_role("note").filter(has_text="Force on the wall")
@@ -89,11 +87,10 @@ def test_the_force_on_the_wall_is_shown(tab: Tab) -> None:
 
 
 def test_a_start_is_dragged_and_typed_and_taken_at_reset(tab: Tab) -> None:
-    simulation, page = tab.simulation, tab.page
+    simulation = tab.simulation
     tab.ask(c.Set("speed", 0.0))
     tab.elapse(0.2)
-    tab.open("Start")
-    page.get_by_label("Show it, to drag it").check()
+    tab.switch("Show it, to drag it").check()
     tab.settle()
     start = simulation.start.place(simulation.editor.curve)
     goal = np.array([0.03, 0.07])

@@ -21,10 +21,6 @@ from tests.support.browser import WAIT, Tab, wait_for
 pytestmark = pytest.mark.thorough
 
 LESSON = "01-path-or-timetable"
-FOLDERS = (
-    *("Advanced", "Realism", "Path editor", "Show", "Wall", "Start"),
-    *("Keep and share", "Export"),
-)
 expect.set_options(timeout=WAIT * 1e3)
 
 SIDEWAYS = """() => [document.documentElement, ...document.querySelectorAll("body *")]
@@ -68,7 +64,7 @@ BURIED = """async (within) => {
     return buried
 }"""
 """Controls that are covered, or off the screen, however one scrolls."""
-CONTROLS = "button, [role=slider], [role=tab], summary, input:not([type=hidden])"
+CONTROLS = "button, [role=slider], select, summary, input:not([type=hidden])"
 
 
 @pytest.fixture(scope="module")
@@ -91,33 +87,36 @@ def is_whole(tab: Tab, within: str = "") -> None:
 
 
 def test_the_lab_is_whole(tab: Tab) -> None:
-    for folder in FOLDERS:
-        tab.open(folder)
+    tab.button("Controls").click()
+    for group in tab.page.locator("#op-panel summary").all():
+        group.click()
+        is_whole(tab, "#op-panel")
+    tab.page.keyboard.press("Escape")
     is_whole(tab)
 
 
-DIALOGS = "Help and keys", "Language, display", "Robot…", "Lessons"
+SHEETS = "Help and keys", "Language, display", "Lessons", "Search"
 
 
-@pytest.mark.parametrize("name", DIALOGS)
-def test_a_dialog_is_whole(tab: Tab, name: str) -> None:
-    tab.press(name)
+def test_every_sheet_is_whole(tab: Tab) -> None:
     dialog = tab.page.get_by_role("dialog")
-    close = dialog.get_by_role("button", name="Close", exact=True)
-    close.wait_for()
-    is_whole(tab, "[role=dialog]")
-    tab.page.keyboard.press("Escape")
-    dialog.wait_for(state="hidden")
+    for name in SHEETS:
+        tab.button(name).click()
+        dialog.wait_for()
+        is_whole(tab, "dialog[open]")
+        tab.page.keyboard.press("Escape")
+        dialog.wait_for(state="detached")
 
 
-@pytest.mark.parametrize("index", [0, 1, 3, 4, 6, 8, 9])
-def test_a_step_of_a_lesson_is_whole(tab: Tab, index: int) -> None:
-    tab.ask(TakeStep(LESSON, index), c.SetRunning(False))
+def test_every_step_of_a_lesson_is_whole(tab: Tab) -> None:
+    tab.ask(c.OpenLesson(LESSON), c.SetRunning(False))
     lesson = tab.lab.lessons.lesson
     assert lesson is not None
-    tab.page.get_by_role("heading", name=lesson.steps[index].title, exact=True).wait_for()
-    wait_for(tab.is_built)
-    is_whole(tab)
+    for index in (0, 1, 3, 4, 6, 8, 9):
+        tab.ask(TakeStep(LESSON, index), c.SetRunning(False))
+        tab.page.get_by_role("heading", name=lesson.steps[index].title, exact=True).wait_for()
+        tab.wait_until_built()
+        is_whole(tab)
 
 
 def test_the_lab_is_held_from_beside_the_text(tab: Tab) -> None:
@@ -131,17 +130,16 @@ def test_the_lab_is_held_from_beside_the_text(tab: Tab) -> None:
     tab.ask(c.Hold(False))
 
 
-def test_controls_take_the_place_of_the_text_and_leave_the_robots_theirs(tab: Tab) -> None:
+def test_a_step_s_controls_are_beside_its_text_and_the_robots_keep_their_room(tab: Tab) -> None:
     tab.ask(TakeStep(LESSON, 0), TakeStep(LESSON, 6))
     heading = tab.page.get_by_role("heading", name="Hold it yourself")
     expect(heading).to_be_in_viewport()
-    tab.button("Expand column").click()
-    expect(tab.slider("K1")).to_be_in_viewport()
+    tab.wait_until_built()
+    slider = tab.slider("K1")
+    slider.scroll_into_view_if_needed()
+    expect(slider).to_be_in_viewport()
     expect(tab.button("Hold both back")).to_be_in_viewport(ratio=0.99)
     wait_for(lambda: tab._canvas()["width"] > 0.5 * 640)
-    is_whole(tab)
-    tab.page.locator("[data-dock-region-collapse]").click()
-    expect(heading).to_be_in_viewport()
     expect(tab.button("Next")).to_be_in_viewport(ratio=0.99)
 
 

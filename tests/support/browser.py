@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import partial
@@ -18,9 +17,6 @@ from viser import _messages as wire
 from onpath.app.lab.commands import Command
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.simulation import Simulation
-from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
-from onpath.app.lab.snapshots.take_snapshot import page_key
-from onpath.app.page.teacher_page import TeacherPage
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_server import LabServer
@@ -44,6 +40,19 @@ WAIT = 60.0  # [s]; software rendering on a busy machine shows a few frames a se
 
 SEEN = f'localStorage.setItem("viser-user:{KEPT_AS}", "{len(INVITATIONS)}")'
 """Makes a browser one that has seen the first minute."""
+OURS = """{
+    const get = URLSearchParams.prototype.get
+    URLSearchParams.prototype.get = function (name) {
+        return name === "panel" ? "ours" : get.call(this, name)
+    }
+}"""
+"""Chooses the controls, whatever the address."""
+TOLD = "() => [onpathLab.lab.robot, onpathLab.lab.language, onpathLab.lesson?.version ?? 0]"
+"""What the page has heard of its lab."""
+TAKEN = "async () => { await onpathLab.ask('display') }"
+"""Answered after everything that the lab has told before."""
+Place = tuple[float, float]
+"""In the window, [px]."""
 NEAR = 1.5  # [px], from where the mouse is to where the lab has heard that it is
 wait_for = partial(waiting.wait_for, seconds=WAIT)
 THREE_FRAMES = """() => new Promise(done => {
@@ -115,6 +124,7 @@ class Tab:
         site: str = "",
     ) -> None:
         self.server = server
+        context.add_init_script(OURS)
         if not newcomer:
             context.add_init_script(SEEN)
         if not draws:
@@ -163,6 +173,7 @@ class Tab:
         self.page.get_by_role("button", name="Pause").or_(
             self.page.get_by_role("button", name="Run", exact=True)
         ).first.wait_for()
+        self.page.locator("#op-panel .field").first.wait_for(state="attached")
         wait_for(self._framed)
 
     def _listen(self) -> None:
@@ -257,8 +268,10 @@ class Tab:
     # User actions.
 
     @contextmanager
-    def dragging(self, *way: tuple[float, float], in_scene: bool = True) -> Iterator[None]:
+    def dragging(self, *way: Place, in_scene: bool = True) -> Iterator[Callable[[Place], None]]:
         """Press the mouse at the first place and move it through the others; release on exit.
+
+        Gives what moves it further.
 
         Args:
             in_scene: whether it drags a node of the scene; the lab has then heard of each place.
@@ -271,12 +284,14 @@ class Tab:
             mouse.move(*place, steps=2)
             if in_scene:
                 self._until_dragged(place)
-        yield
+        yield lambda place: mouse.move(*place)
         mouse.up()
 
     @contextmanager
-    def touching(self, *way: tuple[float, float], in_scene: bool = True) -> Iterator[None]:
+    def touching(self, *way: Place, in_scene: bool = True) -> Iterator[Callable[[Place], None]]:
         """Touch the first place and move the finger through the others; lift it on exit.
+
+        Gives what moves it further.
 
         Args:
             in_scene: see `dragging`.
@@ -289,7 +304,7 @@ class Tab:
                     tell("touchMove", place)
                 if in_scene:
                     self._until_dragged(end)
-            yield
+            yield lambda place: tell("touchMove", place)
             tell("touchEnd")
 
     def _until_dragged(self, place: tuple[float, float]) -> None:
@@ -302,16 +317,12 @@ class Tab:
     def settle(self) -> None:
         """Return when the page has drawn the lab as it is now."""
         self.ask()
-        feed = self.display
-        assert isinstance(feed, LabFeed)
-        shown = feed._last
-        wait_for(lambda: feed._last is not shown and isinstance(feed._last, PageSnapshot))
-        self.ask()  # in the frame after that it has been sent
+        self.page.evaluate(TAKEN)
         self.answer()
         self.page.evaluate(THREE_FRAMES)
 
     def answer(self) -> None:
-        """Return when the page has dealt with what was sent, and the lab heard what it told."""
+        """Return when the scene has dealt with what was sent, and the lab heard what it told."""
         question = uuid4().hex
         message = wire.LocalStorageGetItemRequestMessage("", question)
         self.client._websock_connection.queue_message(message)
@@ -319,28 +330,23 @@ class Tab:
         self.ask()
 
     def is_built(self) -> bool:
-        """Whether the page is that of the current robot, and is not about to be rebuilt."""
-        feed = self.scheduled.display  # a teacher's page is another display than the first one
-        page = feed.page if isinstance(feed, LabFeed) else None
-        if page is None or not page.is_ready:
+        """Whether the page is that of the current robot, language and step."""
+        feed = self.scheduled.display
+        scene = feed.page if isinstance(feed, LabFeed) else None
+        if scene is None or not scene.is_ready or scene.is_outdated:
             return False
-        if isinstance(page, TeacherPage):
-            return True
-        column, version = page._context.text.column, self.lab.lessons.version
-        told = column is not None and column.version == version and bool(column.message)
-        return told and page._built[0] == page_key(self.lab)
+        lab, (robot, language, version) = self.lab, self.page.evaluate(TOLD)
+        lessons = lab.lessons
+        is_read = lessons.lesson is None or version == lessons.version
+        return is_read and (robot, language) == (lab.simulation.entry.name, lab.words.language)
 
     def wait_until_built(self) -> None:
         """Return when the browser has the whole page; a button of the page before does nothing."""
         wait_for(self.is_built)
         self.answer()
-        if self.lab.lessons.lesson is not None and not self._is_teachers():
+        if self.lab.lessons.lesson is not None:
             version = self.lab.lessons.version
             self.page.locator(f'#op-column[data-version="{version}"]').wait_for()
-
-    def _is_teachers(self) -> bool:
-        feed = self.scheduled.display
-        return isinstance(feed, LabFeed) and isinstance(feed.page, TeacherPage)
 
     def press(self, name: str) -> None:
         """Press a button once the page is built."""
@@ -351,19 +357,23 @@ class Tab:
         """Return the button with a label."""
         return self.page.get_by_role("button", name=name, exact=True)
 
-    def open(self, folder: str) -> None:
-        """Open a folder unless it is open already."""
-        title = self.page.get_by_text(folder, exact=True).filter(has=self.page.locator("svg"))
-        content = title.locator("xpath=following-sibling::*[1]")
-        if content.get_attribute("aria-hidden") == "true":
-            title.click()
-            wait_for(lambda: content.get_attribute("aria-hidden") != "true")
-        content.locator("visible=true").first.wait_for()  # it unfolds some frames later
+    def open(self, group: str) -> None:
+        """Open a group of the controls unless it is open already."""
+        summary = self.page.locator("#op-panel summary").filter(
+            has=self.page.locator(".heading").get_by_text(group, exact=True)
+        )
+        if not summary.is_visible():
+            self.button("Controls").first.click()
+        if summary.locator("xpath=..").get_attribute("open") is None:
+            summary.click()
 
     def choose(self, label: str, option: str) -> None:
-        """Choose an option of a drop-down list."""
-        self.page.get_by_label(label, exact=True).filter(visible=True).first.click()
-        self.page.get_by_role("option", name=option, exact=True).click()
+        """Choose one of several options."""
+        row = self.row(label)
+        if row.locator("select").count():
+            row.locator("select").select_option(label=option)
+        else:
+            row.get_by_role("radio", name=option, exact=True).check(force=True)
 
     def focus(self, control: Locator) -> None:
         """Focus a control once it is visible; a hidden one cannot be focused."""
@@ -372,23 +382,43 @@ class Tab:
         wait_for(lambda: control.evaluate("control => control === document.activeElement"))
 
     def blur(self) -> None:
-        """Remove the focus from the focused control.
-
-        A box for numbers takes it back when it places its caret, some time after a key.
-        """
+        """Remove the focus from the focused control."""
         self.page.evaluate(BLUR)
 
+    def row(self, label: str) -> Locator:
+        """Return the row of a setting, in a step's card or among all controls, once it is seen."""
+        rows = self.page.locator(f'.form .field:has([aria-label^="{label}"])')
+        rows.first.wait_for(state="attached")
+        named = f':is([aria-label="{label}"], [aria-label^="{label} ["])'  # with its unit
+        if (exact := self.page.locator(f".form .field:has({named})")).count():
+            rows = exact
+        if not rows.filter(visible=True).count():
+            group = rows.first.locator("xpath=ancestor::details")
+            if group.count():
+                self.open(group.locator(".heading").inner_text())
+            else:
+                self.button("Controls").first.click()
+        return rows.filter(visible=True).first
+
     def slider(self, label: str) -> Locator:
-        """Return the handle of a slider."""
-        return self._row(label).get_by_role("slider")
+        """Return a slider."""
+        return self.row(label).get_by_role("slider")
 
     def number(self, label: str) -> Locator:
         """Return the box for a number, which a slider has, too."""
-        return self._row(label).locator("input[inputmode]")
+        return self.row(label).get_by_role("textbox")
+
+    def value(self, label: str) -> float:
+        """Return the number that a box shows."""
+        return float(self.number(label).input_value().replace("\N{MINUS SIGN}", "-"))
+
+    def switch(self, label: str) -> Locator:
+        """Return a switch."""
+        return self.row(label).get_by_role("switch")
 
     def field(self, label: str) -> Locator:
         """Return a text field."""
-        return self._row(label).locator("input:not([type=hidden])")
+        return self.page.get_by_label(label, exact=True).filter(visible=True)
 
     def enter(self, label: str, text: str) -> None:
         """Type a number into its box once that shows what the lab has."""
@@ -397,11 +427,6 @@ class Tab:
         box.fill(text)
         box.press("Enter")
         self.blur()
-
-    def _row(self, label: str) -> Locator:
-        """The row of a widget: the smallest box around its label and an input."""
-        named = self.page.locator("label").filter(has_text=re.compile(f"^{re.escape(label)}"))
-        return named.first.locator("xpath=ancestor::*[.//input][1]")
 
     def wait_for_no_message(self) -> None:
         """Return when the page shows no message; a failure tells page and lab apart."""

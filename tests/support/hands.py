@@ -6,7 +6,7 @@ the result does not depend on how busy the machine is.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 
@@ -19,12 +19,11 @@ from onpath.lessons.labels import parameter_label
 from onpath.lessons.words import ENGLISH
 from onpath.models.control.settable import specs, value_of
 from onpath.models.control.sides import RIGHT
-from tests.support.browser import Tab, wait_for
+from tests.support.browser import Place, Tab, wait_for
 
 ROBOT = RIGHT
 PACE = 0.1  # [s], simulated, from key to key
 NEAR = 3e-3  # [m]
-Place = tuple[float, float]
 
 
 class Hands:
@@ -53,11 +52,14 @@ class Hands:
         (what.tap if self._touch else what.click)()
 
     @contextmanager
-    def dragging(self, *way: Place, in_scene: bool = True) -> Iterator[None]:
-        """Take something at the first place and move it through the others; let go on exit."""
+    def dragging(self, *way: Place, in_scene: bool = True) -> Iterator[Callable[[Place], None]]:
+        """Take something at the first place and move it through the others; let go on exit.
+
+        Gives what moves it further.
+        """
         drag = self.tab.touching if self._touch else self.tab.dragging
-        with drag(*way, in_scene=in_scene):
-            yield
+        with drag(*way, in_scene=in_scene) as move:
+            yield move
 
     @contextmanager
     def until_received(self) -> Iterator[None]:
@@ -142,15 +144,18 @@ class Slide:
     near: float = 0.05
 
     def __call__(self, hands: Hands) -> None:
-        handle = hands.tab.slider(self.label)
-        handle.scroll_into_view_if_needed()
-        low, high = (
-            float(handle.get_attribute(f"aria-value{each}") or "") for each in ("min", "max")
-        )
-        bar, grip = hands.box(handle.locator("xpath=..")), hands.box(handle)
-        start = grip["x"] + grip["width"] / 2, grip["y"] + grip["height"] / 2
-        end = bar["x"] + (self.value - low) / (high - low) * bar["width"]
-        with hands.dragging(start, (round(end), start[1]), in_scene=False):
+        slider = hands.tab.slider(self.label)
+        slider.scroll_into_view_if_needed()
+        bar = hands.box(slider)
+        low, high, y = bar["x"], bar["x"] + bar["width"], bar["y"] + bar["height"] / 2
+        with hands.dragging(((low + high) / 2, y), in_scene=False) as move:
+            while high - low > 0.5:  # px
+                middle = (low + high) / 2
+                move((middle, y))
+                if hands.tab.value(self.label) < self.value:
+                    low = middle
+                else:
+                    high = middle
             wait_for(lambda: hands.has(self.label, self.value, self.near))
 
 
