@@ -14,6 +14,7 @@ import msgspec
 from msgspec import UNSET, Meta, Struct, UnsetType
 
 from onpath.app.channel.sheet_messages import (
+    ClassMessage,
     Compared,
     CompareSheet,
     DisplaySheet,
@@ -24,6 +25,7 @@ from onpath.app.channel.sheet_messages import (
     LessonSheet,
     Request,
     RobotSheet,
+    SeatAnswer,
     Told,
 )
 from onpath.app.viser_adapter.file_uploads import LONGEST_NAME
@@ -664,6 +666,8 @@ LabMessage = (
     | Index
     | Compared
     | Told
+    | ClassMessage
+    | SeatAnswer
 )
 """What the server sends."""
 

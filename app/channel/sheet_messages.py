@@ -12,6 +12,9 @@ from msgspec import Meta, Struct
 SheetName = Literal["robots", "laws", "compare", "keep", "lessons", "help", "display", "index"]
 """What a page can open, and the index of its search."""
 
+Typed = Annotated[str, Meta(max_length=200)]
+"""A code or a name as somebody has typed it."""
+
 
 class Freehand(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="freehand"):
     """The next stroke around a robot becomes the path; asked for again, no stroke does."""
@@ -41,7 +44,7 @@ class AskSummary(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is"
 class EnterLab(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="enter"):
     """Go to the lab of a code; if that is refused, `Told` says why."""
 
-    code: Annotated[str, Meta(max_length=200)]
+    code: Typed
 
 
 class CompareLaws(
@@ -53,7 +56,35 @@ class CompareLaws(
     obstruction: Annotated[str, Meta(max_length=80)]
 
 
-Request = Ask | Freehand | Prefer | ResetView | AskSummary | EnterLab | CompareLaws
+class JoinClass(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="join"):
+    """Join a class; answered by `SeatAnswer`.
+
+    Attributes:
+        code: of the class; only needed where the page's address has none.
+        name: the nickname.
+    """
+
+    code: Typed
+    name: Typed
+
+
+class LeaveClass(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="leave"):
+    """Leave the class; answered by `SeatAnswer`."""
+
+
+class Teach(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="teach"):
+    """Open the teacher's page with the teacher's key.
+
+    Answered by `SeatAnswer`, unless the page becomes the teacher's.
+    """
+
+    key: Typed
+
+
+SeatRequest = JoinClass | LeaveClass | Teach
+"""What changes the lab's place in the class."""
+
+Request = Ask | Freehand | Prefer | ResetView | AskSummary | EnterLab | CompareLaws | SeatRequest
 """What the page asks of its server, without a change of the lab."""
 
 
@@ -290,3 +321,39 @@ class Told(Struct, frozen=True, kw_only=True, tag_field="is", tag="told"):
 
     of: Literal["keep", "compare"]
     text: str
+
+
+class ClassMessage(Struct, frozen=True, kw_only=True, tag_field="is", tag="class"):
+    """The lab's place in a class: when the page connects, and when it changes.
+
+    Attributes:
+        place: "none": there is nothing to join, or the page is a teacher's; "elsewhere": the server
+            has classes at other addresses; "guest": the page's address is that of a class, which
+            the lab has not joined; "member": it has.
+        code: the class's, as on the projector; empty if the address has none.
+        name: the nickname of a member.
+        longest: how many visible characters a nickname may have.
+        stored: what is stored of a student, and for how long.
+        privacy: the address of the site's privacy notice; empty if it has none.
+    """
+
+    place: Literal["none", "elsewhere", "guest", "member"]
+    code: str = ""
+    name: str = ""
+    longest: int = 0
+    stored: str = ""
+    privacy: str = ""
+
+
+class SeatAnswer(Struct, frozen=True, kw_only=True, tag_field="is", tag="seat"):
+    """What has come of a `SeatRequest`.
+
+    Attributes:
+        of: the request.
+        why: it was refused: a sentence in the page's language; else empty.
+        address: where the page of the class is, if it is another one; else empty.
+    """
+
+    of: Literal["join", "leave", "teach"]
+    why: str = ""
+    address: str = ""

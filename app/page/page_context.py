@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+from onpath.app.common.presses import Presses
 from onpath.app.page.page_text import PageText
 from onpath.app.page.panels.widgets import Post
 from onpath.app.scene.client_scene import Look
@@ -43,6 +44,7 @@ class PageContext:
         seat: the lab's place in the class, or None without a class.
         look: how the scene is to be drawn.
         privacy_url: the address of the site's privacy notice; empty if it has none.
+        presses: limit what the tab asks for that takes long.
         text: what our own part of the page says.
     """
 
@@ -55,3 +57,4 @@ class PageContext:
     seat: ClassSeat | None = None
     look: Look = field(default_factory=Look)
     privacy_url: str = ""
+    presses: Presses = field(default_factory=Presses)

@@ -294,9 +294,10 @@ class LabServer:
             keep_days=self._options.retention.days if keeps else 0,
             enter=partial(self._enter, visit),
             text=text,
-            seat=seat,
+            seat=seat if teaching is None else None,
             look=visit.look,
             privacy_url=self._options.privacy_url,
+            presses=visit.presses,
         )
         make = Page if teaching is None else partial(TeacherPage, teaching=teaching)
         return LabFeed(

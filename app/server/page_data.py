@@ -36,7 +36,8 @@ from onpath.app.channel.messages import (
     encoded_changes,
 )
 from onpath.app.channel.reading import NoPageMessage, read_message
-from onpath.app.channel.sheet_messages import Request
+from onpath.app.channel.sheet_messages import ClassMessage, Request
+from onpath.app.classroom.admission import LONGEST_NAME
 from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.snapshot import Motion, PathSnapshot
@@ -49,6 +50,7 @@ from onpath.app.server.page_files import PageFiles
 from onpath.app.server.page_form import PageForm
 from onpath.app.server.tab_visibility import TabVisibility
 from onpath.app.view.page_words import words_message
+from onpath.app.view.sheets import class_message
 from onpath.app.view.state_message import Projection
 from onpath.app.view.symbol_geometry import has_meaning, symbol_lines
 from onpath.app.viser_adapter.data_channel import Message, PageStream
@@ -82,6 +84,7 @@ class PageData:
         self._view: tuple[Robot, Projection] | None = None  # the robots, with a scene or without
         self._language = ""
         self._state: StateMessage | None = None
+        self._class: ClassMessage | None = None
         self._files = PageFiles(own.post, context.code if context.keep_days else "")
         self._server = PageRequests(context, self._files.exporter)
         self._form = PageForm(own.post)
@@ -120,7 +123,7 @@ class PageData:
             self._files.restart()
             self._form.restart()
             self._source.forget()
-            self._path, self._state, self._language = None, None, ""
+            self._path, self._state, self._class, self._language = None, None, None, ""
             self._lesson = self._measured = b""
             self._symbol, self._lit = "", ("", b"")
             self._plotted = ()
@@ -177,6 +180,9 @@ class PageData:
         if news := changes(state, self._state):
             self._state = state
             messages.append(partial(encoded_changes, StateMessage, news))
+        if (seat := self._class_now(snapshot.nickname)) != self._class:
+            self._class = seat
+            messages.append(partial(encoded, seat))
         messages += self._of_lesson()
         if self._form.is_asked:
             news = self._form.news(snapshot, page, self._context.course, text.words)
@@ -185,6 +191,17 @@ class PageData:
             messages.append(partial(encoded, self._answers.popleft()))
         if messages:
             self._stream.hand_over(*messages)
+
+    def _class_now(self, nickname: str) -> ClassMessage:
+        context = self._context
+        return class_message(
+            self._text.words,
+            None if context.seat is None else context.seat.code,
+            nickname,
+            longest=LONGEST_NAME,
+            days=context.keep_days,
+            privacy=context.privacy_url,
+        )
 
     def _of_lesson(self) -> list[Message]:
         column, messages = self._text.column, list[Message]()

@@ -10,6 +10,7 @@ import viser
 from onpath.app.channel.messages import Hello, Refused, Store, StoredName, Wait, encoded
 from onpath.app.classroom.teaching.teacher_context import TeacherChoices
 from onpath.app.common.error_log import log_error
+from onpath.app.common.presses import Presses
 from onpath.app.scene.client_scene import Look
 from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.tab_visibility import TabVisibility
@@ -34,6 +35,7 @@ class Visit:
         address, prefix, language: of that connection; see `CountedConnection`.
         stream: what the page is told.
         look: how its scene is to be drawn.
+        presses: limit what it asks for that takes long.
         client: viser's, while there is one.
         feed: shows its lab; None before it has one.
         teacher: the pass and the choices of a teacher, or None.
@@ -52,7 +54,7 @@ class Visit:
         self.language = connection.language
         self.stream = PageStream(channel, left)
         self.stream.receive = _no_lab
-        self.look = Look(hello.dark, hello.plain)
+        self.look, self.presses = Look(hello.dark, hello.plain), Presses()
         self.sight = TabVisibility()
         self.client: viser.ClientHandle | None = None
         self.feed: LabFeed | None = None

@@ -7,7 +7,13 @@ from dataclasses import dataclass
 
 from msgspec import Struct
 
-from onpath.app.channel.sheet_messages import DisplaySheet, KeepSheet, LanguageName, SheetName
+from onpath.app.channel.sheet_messages import (
+    ClassMessage,
+    DisplaySheet,
+    KeepSheet,
+    LanguageName,
+    SheetName,
+)
 from onpath.app.lab.lesson_state import LessonState
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
 from onpath.app.view.comparing import compare_sheet
@@ -68,4 +74,32 @@ def display_sheet(preferences: Mapping[str, bool]) -> DisplaySheet:
         languages=[LanguageName(code=code, name=language_name(code)) for code in languages()],
         speaks=preferences["speaks"],
         sounds=preferences["sounds"],
+    )
+
+
+def class_message(
+    words: Words, place: str | None, name: str, *, longest: int, days: int, privacy: str
+) -> ClassMessage:
+    """The lab's place in a class.
+
+    Args:
+        place: code of the class that the page's address has, which may be empty; None: there is no
+            class, or the page is a teacher's.
+        name: nickname of a member, or empty.
+        longest: see `ClassMessage`.
+        days: number of days without use after which the lab is deleted; 0 if it lasts only as long
+            as the server.
+        privacy: the address of the site's privacy notice; may be empty.
+    """
+    if place is None:
+        return ClassMessage(place="none")
+    if not place:
+        return ClassMessage(place="elsewhere")
+    return ClassMessage(
+        place="member" if name else "guest",
+        code=place.upper(),
+        name=name,
+        longest=longest,
+        stored=words("class.stored", days=days),
+        privacy=privacy,
     )

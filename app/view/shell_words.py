@@ -4,7 +4,18 @@ from __future__ import annotations
 
 AIDS = ("hold", "pull", "bend", "aim", "lens", "chart", "view", "search")
 """What the help names; see assets/web/parts/help_sheet.ts."""
-SHEETS = ("robots", "laws", "compare", "keep", "lessons", "help", "display", "file")
+SHEETS = (
+    "robots",
+    "laws",
+    "compare",
+    "keep",
+    "lessons",
+    "help",
+    "display",
+    "file",
+    "class",
+    "teach",
+)
 KINDS = ("open", "robot", "law", "path", "lesson", "key")
 SHELL = (
     *("lesson.controls", "controls.help", "panel.handle"),
@@ -25,6 +36,10 @@ SHELL = (
     *("keep.shared", "keep.paste", "keep.paste_hint", "keep.use", "keep.report"),
     *("keep.with_code", "keep.with_code_means", "keep.sharing", "keep.coming_back", "keep.record"),
     *("code.copy", "code.copied"),
+    *("class.title", "class.join", "class.leave", "class.code", "class.code_hint"),
+    *("class.nickname", "class.nickname_hint", "class.what_stored", "class.privacy"),
+    *("class.next", "class.gone", "class.elsewhere"),
+    *("class.teacher", "class.key", "class.key_hint", "class.teach"),
     *("design.files", "design.size", "design.size_hint", "design.radius", "design.radius_hint"),
     *("design.open", "design.open_hint", "design.upload", "design.reading"),
     *("export.title", "export.table", "export.picture", "export.film"),
@@ -34,5 +49,11 @@ SHELL = (
     *("compare.on_both", "compare.stopped", "compare.stopped_text", "compare.picture"),
     *("compare.time", "compare.curves"),
 )
-FILLED = {"compare.computing": ("done", "all"), "compare.count": ("most",)}
+FILLED = {
+    "compare.computing": ("done", "all"),
+    "compare.count": ("most",),
+    "class.of": ("code",),
+    "class.member": ("name",),
+    "class.too_long": ("most",),
+}
 """Messages whose values the page fills in."""

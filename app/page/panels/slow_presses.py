@@ -3,43 +3,16 @@
 from __future__ import annotations
 
 import threading
-import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
-from onpath.app.common.allowance import Allowance
 from onpath.app.common.error_log import log_error
+from onpath.app.common.presses import Presses
 from onpath.app.scene.build_queue import in_turn
 
 if TYPE_CHECKING:
     import viser
-
-MOST, APART = 5, 0.25
-"""Presses that a tab may make in quick succession, and the time that each one uses up, [s]."""
-
-
-class Presses:
-    """Limits the presses of one tab: one at a time, and few per second. Use it on one event loop.
-
-    Args:
-        clock: monotonic time, [s].
-    """
-
-    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
-        self._under_way = threading.Lock()
-        self._allowance = Allowance(MOST, 1 / APART, clock)
-
-    def begin(self) -> bool:
-        """Begin a press, if one is allowed now; it lasts until `end`. Returns whether it is."""
-        if not self._allowance.covers() or not self._under_way.acquire(blocking=False):
-            return False
-        return self._allowance.take()
-
-    def end(self) -> None:
-        """End the press. Any thread may call this."""
-        self._under_way.release()
-
 
 _presses: WeakKeyDictionary[Any, Presses] = WeakKeyDictionary()
 
@@ -48,7 +21,7 @@ def on_slow_press(handle: Any, act: Callable[[], None]) -> None:
     """Call `act()` in a separate thread when the button is pressed.
 
     `act` may block or rebuild the page. Further presses from the same tab are dropped while it
-    runs, and when there are more of them than any user makes; see `MOST`.
+    runs, and when there are more of them than any user makes; see `Presses`.
     """
     _on_press(handle, lambda _: act())
 

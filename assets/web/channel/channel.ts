@@ -8,9 +8,9 @@ import { Files } from "./files"
 import { keep, keepLab, kept, siteOf } from "./kept"
 import { RemoteSettings } from "./settings"
 import {
-    PROTOCOL, type Ask, type Command, type Compared, type CompareSheet, type DisplaySheet, type FrameMessage, type Hello, type HelpSheet, type Index, type KeepSheet,
+    PROTOCOL, type Ask, type ClassMessage, type Command, type Compared, type CompareSheet, type DisplaySheet, type FrameMessage, type Hello, type HelpSheet, type Index, type KeepSheet,
     type LabMessage, type LawSheet, type LessonMessage, type LessonSheet, type Light, type MeasuredMessage, type PageMessage, type PathMessage,
-    type RobotSheet, type StateMessage, type Told, type WordsMessage,
+    type RobotSheet, type SeatAnswer, type StateMessage, type Told, type WordsMessage,
 } from "./messages"
 
 const SECONDS = 60 // of samples that are kept
@@ -27,6 +27,8 @@ const SETTLES = 400 // [ms], until what the server shows counts again
 /** Where the numbers of a field are among those that a row has besides for each robot. */
 type Fields = Map<string, { first: number; size: number; unit: number }>
 type SheetName = Ask["what"]
+/** What an open sheet is told without having asked for it just now. */
+export type News = Compared | Told | SeatAnswer
 type Answer = RobotSheet | LawSheet | CompareSheet | KeepSheet | LessonSheet | HelpSheet | DisplaySheet | Index
 
 /** A path through points at evenly spaced θ from -π to π. */
@@ -141,6 +143,10 @@ export class RemoteEngine implements Engine {
     /** The open step of a lesson, and what is measured in it; null until they are known. */
     lesson: LessonMessage | null = null
     measured: MeasuredMessage | null = null
+    /** The lab's place in a class; null until it is known. */
+    seat: ClassMessage | null = null
+    /** Whether the page has offered to join the class. */
+    hasGreeted = false
     private samples: Sample[] = [] // the last one is the present
     private fields: Fields = new Map()
     private plotted: readonly string[] = [] // fields that are asked for
@@ -152,12 +158,13 @@ export class RemoteEngine implements Engine {
     private symbolLines: { symbol: string; lines: readonly Vector[][] } = { symbol: "", lines: [] }
     private sending = 0 // timer of an instant to be looked at
     private socket: WebSocket | null = null
+    private hasLab = false // whether this connection has had a lab
     private sees = false
     private tries = 0
     private saw = 0 // [ms], when the page was drawn, as the lab knows
     private again = 0 // [ms], when it may be tried again
     private asked: { what: SheetName; resolve: (answer: Answer) => void }[] = [] // not answered yet
-    private readonly news = new Set<(news: Compared | Told) => void>()
+    private readonly news = new Set<(news: News) => void>()
     private readonly listeners = new Set<(change: Change) => void>()
 
     /** `plain`: whether the page draws in software. */
@@ -292,7 +299,7 @@ export class RemoteEngine implements Engine {
     }
 
     /** Hear what an open sheet is told later. */
-    onNews(listener: (news: Compared | Told) => void, ended: AbortSignal): void {
+    onNews(listener: (news: News) => void, ended: AbortSignal): void {
         this.news.add(listener)
         ended.addEventListener("abort", () => this.news.delete(listener))
     }
@@ -330,12 +337,8 @@ export class RemoteEngine implements Engine {
         if (!this.connected) {
             this.connected = true
             this.tries = this.refused = this.saw = 0
-            if (this.symbol) this.send({ is: "light", symbol: this.symbol })
-            if (this.plotted.length) this.send({ is: "plots", fields: [...this.plotted] })
-            this.files.restart()
-            if (this.asksForm) this.send({ is: "fields" })
-            this.settings.connected()
-            for (const { what } of this.asked) this.send({ is: "ask", what })
+            this.hasLab = false
+            this.askAgain()
             this.tell("state")
         }
         this.waits = message.is === "wait" ? message.text : message.is === "store" ? this.waits : ""
@@ -364,17 +367,32 @@ export class RemoteEngine implements Engine {
             this.settings.hear(message)
             this.tell("values")
         } else if (message.is === "file" || message.is === "download" || message.is === "part") this.files.hear(message)
-        else if (message.is === "compared" || message.is === "told") for (const listener of this.news) listener(message)
+        else if (message.is === "compared" || message.is === "told" || message.is === "seat") for (const listener of this.news) listener(message)
         else if (message.is === "words") {
             this.words = message
             this.tell("words")
         } else if (message.is === "lab") {
             keepLab(message.code)
             keepDraftsOf(message.code)
+            if (this.hasLab) this.askAgain() // another lab, or the same one as another page
+            this.hasLab = true
         }
-        else if (message.is === "store") keep(message.key, message.value)
+        else if (message.is === "class") {
+            this.seat = message
+            this.tell("class")
+        } else if (message.is === "store") keep(message.key, message.value)
         else if (message.is === "refused") console.warn(`refused: ${message.why}`)
         else if (message.is !== "alive" && message.is !== "wait") this.answered(message)
+    }
+
+    /** Nobody who is asked now knows what the page has asked for. */
+    private askAgain(): void {
+        if (this.symbol) this.send({ is: "light", symbol: this.symbol })
+        if (this.plotted.length) this.send({ is: "plots", fields: [...this.plotted] })
+        this.files.restart()
+        if (this.asksForm) this.send({ is: "fields" })
+        this.settings.connected()
+        for (const { what } of this.asked) this.send({ is: "ask", what })
     }
 
     private answered(answer: Answer): void {

@@ -227,6 +227,28 @@ export interface CompareLaws {
     obstruction: string
 }
 
+/** Join a class; answered by `SeatAnswer`. */
+export interface JoinClass {
+    is: "join"
+    /** of the class; only needed where the page's address has none. */
+    code: string
+    /** the nickname. */
+    name: string
+}
+
+/** Leave the class; answered by `SeatAnswer`. */
+export interface LeaveClass {
+    is: "leave"
+}
+
+/** Open the teacher's page with the teacher's key.
+ *
+ * Answered by `SeatAnswer`, unless the page becomes the teacher's. */
+export interface Teach {
+    is: "teach"
+    key: string
+}
+
 /** What changes the lab; see app/lab/commands. */
 export type Command =
     | { do: "Act"; actions: Action[] }
@@ -306,6 +328,9 @@ export type PageMessage =
     | AskSummary
     | EnterLab
     | CompareLaws
+    | JoinClass
+    | LeaveClass
+    | Teach
 
 /** The code of the page's lab, which its browser keeps before those of its other labs. */
 export interface LabCode {
@@ -774,6 +799,35 @@ export interface Told {
     text: string
 }
 
+/** The lab's place in a class: when the page connects, and when it changes. */
+export interface ClassMessage {
+    is: "class"
+    /** "none": there is nothing to join, or the page is a teacher's; "elsewhere": the server has classes at other addresses;
+     * "guest": the page's address is that of a class, which the lab has not joined; "member": it has. */
+    place: "elsewhere" | "guest" | "member" | "none"
+    /** the class's, as on the projector; empty if the address has none. */
+    code: string
+    /** the nickname of a member. */
+    name: string
+    /** how many visible characters a nickname may have. */
+    longest: number
+    /** what is stored of a student, and for how long. */
+    stored: string
+    /** the address of the site's privacy notice; empty if it has none. */
+    privacy: string
+}
+
+/** What has come of a `SeatRequest`. */
+export interface SeatAnswer {
+    is: "seat"
+    /** the request. */
+    of: "join" | "leave" | "teach"
+    /** it was refused: a sentence in the page's language; else empty. */
+    why: string
+    /** where the page of the class is, if it is another one; else empty. */
+    address: string
+}
+
 /** A message with only the fields that have changed. */
 export type Changes<Message extends { is: string }> = Pick<Message, "is"> & Partial<Message>
 
@@ -806,3 +860,5 @@ export type LabMessage =
     | Index
     | Compared
     | Told
+    | ClassMessage
+    | SeatAnswer

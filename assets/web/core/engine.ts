@@ -87,7 +87,7 @@ export type Act =
 
 /** What has changed: there are new samples; earlier ones are no longer valid; the step of a lesson, or what is
  * measured in it; or anything else. */
-export type Change = "samples" | "history" | "path" | "lesson" | "measured" | "state" | "words" | "form" | "values"
+export type Change = "samples" | "history" | "path" | "lesson" | "measured" | "state" | "words" | "form" | "values" | "class"
 
 export interface Engine {
     readonly state: State

@@ -1,8 +1,9 @@
 // What stands around the stage of the lab's page: the head, the controls, the search, the keys, and all that opens.
 
-import type { RemoteEngine } from "../channel/channel"
-import type { Command, Compared, Index, PageMessage, Told } from "../channel/messages"
+import type { News, RemoteEngine } from "../channel/channel"
+import type { Command, Index, PageMessage } from "../channel/messages"
 import { said, type Texts } from "../core/words"
+import { ClassSheet } from "../parts/class_sheet"
 import { LawComparison } from "../parts/compare_sheet"
 import { display } from "../parts/display_sheet"
 import { pathFromFile } from "../parts/file_sheet"
@@ -24,6 +25,7 @@ import type { SheetDialog } from "../parts/sheet"
 const TITLES = {
     robots: "robots.choose", laws: "laws.about", compare: "compare.title", keep: "keep.title", lessons: "lesson.choose",
     help: "help.title", display: "display.title", file: "design.files",
+    class: "class.title", teach: "class.teach",
 } as const
 type Opens = keyof typeof TITLES
 
@@ -41,6 +43,9 @@ export class Shell {
     private opened: { name: Opens; dialog: SheetDialog } | null = null
     private keep: Keep | null = null
     private compare: LawComparison | null = null
+    private seat: ClassSheet | null = null
+    private place = "" // the lab's in the class, as it was told last
+    private leaves = false // whether it leaves the class by itself
 
     /** `reopen`: what was open before the page got its present words. */
     constructor(private readonly engine: RemoteEngine, private readonly texts: Texts, signal: AbortSignal, reopen: string) {
@@ -50,10 +55,12 @@ export class Shell {
         this.keys = new Keys(message => engine.send(message), () => this.search.open(), signal)
         engine.on(change => {
             if (change === "state") this.follow()
+            else if (change === "class") this.sit()
         }, signal)
         engine.onNews(news => this.hear(news), signal)
         this.follow()
-        if (reopen in TITLES) void this.open(reopen as Opens)
+        this.sit()
+        if (reopen in TITLES && !this.opened) void this.open(reopen as Opens)
     }
 
     get elements(): HTMLElement[] { return [this.header.element, this.panel.element] }
@@ -77,6 +84,7 @@ export class Shell {
             help: async () => help(texts, await engine.ask("help"), this.keys.known, () => pointAtStage(texts, engine)),
             display: async () => display(texts, await engine.ask("display"), {
                 language: lab.language, large: lab.presenting, look: keptLook(), send, setLook: keepLook,
+                teach: this.isClassroom ? () => void this.open("teach") : null,
             }),
             keep: async () => (this.keep = new Keep(texts, await engine.ask("keep"), send, () => (this.keep = null))).open(),
             file: () => Promise.resolve(pathFromFile(texts, engine.files)),
@@ -84,6 +92,8 @@ export class Shell {
                 const data = await engine.ask("compare")
                 return (this.compare ??= new LawComparison(texts, { send, get laws() { return engine.lab!.laws } })).open(data)
             },
+            class: () => Promise.resolve(this.takeSeat("class")),
+            teach: () => Promise.resolve(this.takeSeat("teach")),
         }
         this.opened?.dialog.close()
         this.opened = { name, dialog: await opens[name]() }
@@ -112,8 +122,41 @@ export class Shell {
         })
     }
 
-    private hear(told: Compared | Told): void {
-        if (told.is === "compared") this.compare?.show(told)
+    private get isClassroom(): boolean { return (this.engine.seat?.place ?? "none") !== "none" }
+
+    /** Open the card of the class, or what asks for a teacher's key. */
+    private takeSeat(name: "class" | "teach", isGone = false): SheetDialog {
+        const { engine, texts } = this
+        const send = (message: PageMessage) => {
+            this.leaves = message.is === "leave"
+            engine.send(message)
+        }
+        const seat = (this.seat = new ClassSheet(texts, name === "teach", send, () => (this.seat = null)))
+        return seat.open(engine.seat!, isGone)
+    }
+
+    /** Show the lab's place in a class. A page at the address of a class begins with its card. */
+    private sit(): void {
+        const { engine, header, place, leaves } = this, { seat } = engine
+        if (!seat) return
+        this.place = seat.place
+        header.sit(seat)
+        this.seat?.show(seat)
+        if (place && seat.place !== place) {
+            this.seat?.close() // what was asked for is done
+            if (document.activeElement === document.body) header.seat.focus()
+        }
+        if (seat.place !== "guest" || this.seat) return
+        const isGone = place === "member"
+        if (isGone ? leaves : engine.hasGreeted) return
+        engine.hasGreeted = true
+        this.opened?.dialog.close()
+        this.opened = { name: "class", dialog: this.takeSeat("class", isGone) }
+    }
+
+    private hear(told: News): void {
+        if (told.is === "seat") this.seat?.hear(told)
+        else if (told.is === "compared") this.compare?.show(told)
         else if (told.of === "compare") this.compare?.refuse(told.text)
         else this.keep?.tell(told.text)
     }
@@ -127,7 +170,8 @@ export class Shell {
                 form!.reveal(name)
             },
         }))
-        const sheets = Object.entries(TITLES).map(([name, key]) => ({
+        const opens = Object.entries(TITLES).filter(([name]) => this.isClassroom || (name !== "class" && name !== "teach"))
+        const sheets = opens.map(([name, key]) => ({
             kind: said(texts, "search.kind_open"), label: said(texts, key), text: said(texts, `search.of_${name}`), go: () => void this.open(name as Opens),
         }))
         const found = (index?.found ?? []).map(({ kind, label, text, send }) => ({

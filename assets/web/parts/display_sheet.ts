@@ -4,7 +4,7 @@ import type { Command, DisplaySheet, PageMessage } from "../channel/messages"
 import { made, switchInput } from "../core/dom"
 import { said, type Texts } from "../core/words"
 import { LOOKS, type Look } from "./look"
-import { SheetDialog } from "./sheet"
+import { pressed, SheetDialog } from "./sheet"
 
 /** What the sheet shows and changes. */
 interface Display {
@@ -13,6 +13,8 @@ interface Display {
     look: Look
     send(message: Command | PageMessage): void
     setLook(look: Look): void
+    /** Opens what asks for a teacher's key; null where there is no class. */
+    teach: (() => void) | null
 }
 
 export function display(texts: Texts, { languages, speaks, sounds }: DisplaySheet, host: Display): SheetDialog {
@@ -31,6 +33,7 @@ export function display(texts: Texts, { languages, speaks, sounds }: DisplayShee
         toggle("display.speaks", speaks, on => host.send({ is: "prefer", name: "speaks", on })),
         toggle("display.sounds", sounds, on => host.send({ is: "prefer", name: "sounds", on })),
     )
+    if (host.teach) sheet.body.append(made("p", "row", pressed("", said(texts, "class.teacher"), host.teach)))
     sheet.open(language)
     return sheet
 }

@@ -1,18 +1,19 @@
 // A sheet over the page: one look for everything that opens. It closes by its cross, Escape, or a press beside it, and
 // the focus goes back to what has opened it.
 
-import { made } from "../core/dom"
+import { made, tell } from "../core/dom"
 import { said, type Texts } from "../core/words"
 import { icon } from "./icons"
 
 export class SheetDialog {
     readonly element: HTMLDialogElement
     readonly body: HTMLElement
+    private readonly heading: HTMLElement
     private opener: HTMLElement | null = null
 
     /** `name`: of its style, such as "wide". `closed` is called whenever it has been closed. */
     constructor(texts: Texts, name: string, title: string, private readonly closed: () => void = () => {}) {
-        const heading = made("h2", "", title)
+        const heading = (this.heading = made("h2", "", title))
         heading.id = `op-sheet-${name}`
         const cross = pressed("op-cross", icon("close"), () => this.close())
         cross.ariaLabel = cross.title = said(texts, "help.close")
@@ -26,6 +27,8 @@ export class SheetDialog {
     }
 
     get isOpen(): boolean { return this.element.open }
+
+    set title(text: string) { tell(this.heading, text) }
 
     /** `first`: what gets the focus; else the first control after the cross, or the cross. */
     open(first?: HTMLElement | null): void {

@@ -7,7 +7,7 @@ from itertools import accumulate
 from hypothesis import given
 from hypothesis import strategies as st
 
-from onpath.app.page.panels.slow_presses import APART, MOST, Presses
+from onpath.app.common.presses import APART, MOST, Presses
 
 
 @given(st.lists(st.tuples(st.floats(0.0, 1.0), st.booleans()), min_size=1, max_size=60))

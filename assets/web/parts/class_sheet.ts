@@ -1,0 +1,133 @@
+// The place of a lab in a class: a student joins it, sees who one is in it, or leaves it; with the key, a teacher opens the
+// teacher's page.
+
+import type { ClassMessage, PageMessage, SeatAnswer } from "../channel/messages"
+import { made, tell } from "../core/dom"
+import { draftOf, keepDraft } from "../core/drafts"
+import { said, type Texts } from "../core/words"
+import { pressed, SheetDialog } from "./sheet"
+
+const DRAFT = "nickname"
+const LONGEST = 200 // characters of a message's text
+
+export class ClassSheet {
+    private readonly sheet: SheetDialog
+    private readonly refusal = made("p", "refusal")
+    private acts: HTMLButtonElement | null = null // sends a request, one at a time
+    private field: HTMLInputElement | null = null
+    private shown = ""
+
+    /** `teaches`: whether it is for the teacher's key. */
+    constructor(private readonly texts: Texts, private readonly teaches: boolean,
+        private readonly send: (message: PageMessage) => void, closed: () => void) {
+        this.sheet = new SheetDialog(texts, teaches ? "teach" : "class", "", closed)
+        this.refusal.role = "alert"
+        this.refusal.id = "op-seat-refusal"
+    }
+
+    open(seat: ClassMessage, isGone = false): SheetDialog {
+        this.show(seat)
+        if (isGone) {
+            const gone = made("p", "gone", said(this.texts, "class.gone"))
+            gone.role = "status"
+            this.sheet.body.prepend(gone)
+        }
+        this.sheet.open(this.field)
+        return this.sheet
+    }
+
+    close(): void { this.sheet.close() }
+
+    /** Follow the lab's place; what is half typed stays. */
+    show(seat: ClassMessage): void {
+        const { texts, teaches, sheet, refusal } = this
+        if (this.acts) this.acts.disabled = false // it is told anew with each connection
+        const shown = JSON.stringify([seat, teaches])
+        if (shown === this.shown) return
+        this.shown = shown
+        const hadFocus = sheet.body.contains(document.activeElement)
+        this.acts = this.field = null
+        tell(refusal, "")
+        sheet.title = said(texts, teaches ? "class.teach" : "class.title") + (seat.code && ` ${seat.code}`)
+        sheet.body.replaceChildren(...teaches ? this.key() : seat.place === "member" ? this.member(seat) : this.joining(seat))
+        if (hadFocus) sheet.body.querySelector<HTMLElement>("form input")?.focus()
+    }
+
+    /** What has come of the last request. */
+    hear({ why, address }: SeatAnswer): void {
+        const { texts, field, acts, refusal } = this
+        if (acts) acts.disabled = false
+        tell(refusal, why)
+        if (field) field.ariaInvalid = why ? "true" : null
+        if (why) field?.focus()
+        if (!address) return
+        const link = made("a", "main", said(texts, "class.elsewhere"))
+        link.href = address
+        this.sheet.body.querySelector("a.main")?.remove()
+        refusal.after(link)
+        link.focus()
+    }
+
+    private joining(seat: ClassMessage): HTMLElement[] {
+        const { code, longest } = seat
+        if (!code) return [this.asks("class.code", "class.code_hint", "class.join", typed => { this.send({ is: "join", code: typed, name: "" }) })]
+        const form = this.asks("class.nickname", "class.nickname_hint", "class.join", typed => {
+            if (lengthOf(typed) > longest) return said(this.texts, "class.too_long", { most: String(longest) })
+            this.send({ is: "join", code: "", name: typed })
+            return ""
+        })
+        const draft = draftOf<{ typed: string }>(DRAFT)
+        if (typeof draft?.typed === "string") this.field!.value = draft.typed
+        this.field!.addEventListener("input", () => keepDraft(DRAFT, this.field && { typed: this.field.value }))
+        return [form, this.stored(seat)]
+    }
+
+    private member(seat: ClassMessage): HTMLElement[] {
+        const { texts } = this
+        keepDraft(DRAFT, null)
+        const [before = "", after = ""] = said(texts, "class.member").split("{name}")
+        const leave = (this.acts = pressed("", said(texts, "class.leave"), () => {
+            leave.disabled = true
+            this.send({ is: "leave" })
+        }))
+        return [made("p", "", before, made("b", "", made("bdi", "", seat.name)), after), made("p", "", said(texts, "class.next")), this.stored(seat), leave, this.refusal]
+    }
+
+    private key(): HTMLElement[] {
+        const form = this.asks("class.key", "class.key_hint", "class.teach", key => { this.send({ is: "teach", key }) })
+        this.field!.type = "password"
+        return [form]
+    }
+
+    private stored({ stored, privacy }: ClassMessage): HTMLElement {
+        const { texts } = this, text = made("p", "note", stored)
+        if (privacy) text.append(" ", Object.assign(made("a", "", said(texts, "class.privacy")), { href: privacy, target: "_blank", rel: "noopener noreferrer" }))
+        return made("details", "stored", made("summary", "", said(texts, "class.what_stored")), text)
+    }
+
+    /** A field that must be filled in, and the button that uses it; `use` returns what is wrong with what was typed. */
+    private asks(label: string, hint: string, act: string, use: (typed: string) => string | void): HTMLElement {
+        const { texts, refusal } = this
+        const field = (this.field = Object.assign(made("input", ""), { type: "text", autocomplete: "off", autocapitalize: "off", spellcheck: false, maxLength: LONGEST }))
+        const note = made("p", "note", said(texts, hint))
+        note.id = "op-seat-hint"
+        field.setAttribute("aria-required", "true")
+        field.setAttribute("aria-describedby", `${note.id} ${refusal.id}`)
+        const button = (this.acts = Object.assign(made("button", "main", said(texts, act)), { type: "submit" }))
+        const form = made("form", "asks", made("div", "typed", made("label", "", made("span", "", said(texts, label)), field), button), refusal, note)
+        form.noValidate = true // the lab says in the page's language what is missing
+        form.addEventListener("submit", event => {
+            event.preventDefault()
+            if (button.disabled) return
+            const why = use(field.value.trim()) ?? ""
+            button.disabled = !why
+            tell(refusal, why)
+        })
+        return form
+    }
+}
+
+/** How many characters readers see. */
+function lengthOf(text: string): number {
+    return [...new Intl.Segmenter().segment(text)].length
+}
