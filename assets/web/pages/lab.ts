@@ -175,7 +175,7 @@ class Face {
     /** Where the robots' picture will be. */
     private room(): DOMRect {
         const { left, top, width, height } = document.querySelector("#root")?.getBoundingClientRect() ?? new DOMRect()
-        return new DOMRect(left, top, Math.max(width - (UPRIGHT.matches ? 0 : PANEL), 0), height)
+        return new DOMRect(left, top, Math.max(width - (OURS || UPRIGHT.matches ? 0 : PANEL), 0), height)
     }
 
     /** A panel on the left is as high as the window; the strip begins beside it. */

@@ -7,6 +7,7 @@ import { Drawings } from "./drawings"
 import type { Path } from "../simulation/path"
 import type { Side } from "../simulation/side"
 
+const NARROW = 240, MARGIN = 0.025 // [px], [m] that a picture of less width leaves out at each side
 const FAINT = 0.4 // how opaque the trace is
 const [REACH, NEAR] = [44, 22] // [px], from the tip and from a control point, within which they are grabbed
 const TIE = 8 // [px] by which a point must be nearer than the tip, unless it is selected
@@ -86,7 +87,8 @@ export class View {
     private fill(): void {
         const { width, height } = this.sheet
         const [left, right, bottom, top] = this.data.box
-        this.scale = Math.min(width / (right - left), height / (top - bottom))
+        const margin = width < NARROW ? MARGIN : 0
+        this.scale = Math.min(width / (right - left - 2 * margin), height / (top - bottom))
         this.left = (left + right) / 2 - width / 2 / this.scale
         this.top = (bottom + top) / 2 + height / 2 / this.scale
     }
