@@ -494,11 +494,13 @@ class FormOption(Struct, frozen=True, omit_defaults=True, kw_only=True):
 
 
 class FormField(Struct, frozen=True, omit_defaults=True, kw_only=True):
-    """A row of a form. Its value is told by its name; a note's is what it says.
+    """A row of a form. Its value is told by its name; a note's is what it says. The value of
+    `poles` has a line for each pole: its channel, its real and its imaginary part, [1/s].
 
     Attributes:
         help: what one will see, in a sentence.
         low, high, step: range of a number.
+        limit: of a number: the name of the value above which it is unstable.
         factor: how many of `unit` make one unit of the value.
         needs: what it needs in order to act: of each, one suffices.
         on: the number to which a switch sets it, if 0 is off.
@@ -506,13 +508,13 @@ class FormField(Struct, frozen=True, omit_defaults=True, kw_only=True):
         mark: the value of a lesson's step.
         act: the command that a button sends.
         tone: of a note or a button: "main", "warning" or none; of a note also the side whose colour
-            it has: "of_left" or "of_right".
+            it has, "of_left" or "of_right", or "ranks", below the colours of the rank test's map.
         picture: the address of a button's picture.
         section: a heading above all fields of the same section.
     """
 
     name: str
-    kind: Literal["number", "choice", "switch", "button", "text", "note"]
+    kind: Literal["number", "choice", "switch", "button", "text", "note", "poles"]
     label: str
     symbol: str = ""
     unit: str = ""
@@ -520,6 +522,7 @@ class FormField(Struct, frozen=True, omit_defaults=True, kw_only=True):
     low: float = 0.0
     high: float = 0.0
     step: float = 0.0
+    limit: str = ""
     factor: float = 1.0
     scale: Literal["linear", "log"] = "linear"
     on: float | None = None

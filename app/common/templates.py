@@ -37,6 +37,7 @@ def environment() -> Environment:
     )
     colours = {n: c for n, c in vars(palette).items() if isinstance(c, palette.Colour)}
     shown = {n: f"var(--op-{n.lower()}, {c.hex})" for n, c in colours.items()}
+    shown |= {"SCALE": ", ".join(colour.hex for colour in palette.SCALE)}
     made.globals = {"palette": SimpleNamespace(**shown), "phrase": phrase, "math_font": math_font}
     return made
 

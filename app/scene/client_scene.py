@@ -20,7 +20,7 @@ from onpath.app.scene.pointer_projection import plane_coordinates
 from onpath.app.scene.projection import seen_by, seen_from
 from onpath.app.scene.scene import Scene
 from onpath.app.scene.stage import Insets, view_of
-from onpath.app.scene.stage_catalogue import stage_of
+from onpath.app.scene.stage_catalogue import IN_PATH_PLANE, stage_of
 from onpath.app.scene.step_drawings import StepDrawings
 from onpath.app.scene.tones import DARK, LIGHT
 from onpath.app.view.state_message import Projection
@@ -71,6 +71,8 @@ class ClientScene:
     Attributes:
         client: whose scene it is.
         is_outdated: whether it must be rebuilt, for which it needs a complete snapshot.
+        pull: name of the plane in which the mouse pulls end-points; the stage's first if it has
+            none of this name.
     """
 
     def __init__(
@@ -83,6 +85,7 @@ class ClientScene:
         switches: set[str],
     ) -> None:
         self.client, self._look, self._post, self.switches = client, look, post, switches
+        self.pull = IN_PATH_PLANE
         self._channel = FrameChannel(client)
         self._rebuilds = WorkThread("rebuild")
         self._framed, self._settling = 0.0, SETTLING  # width / height, to which the camera fits
@@ -148,6 +151,11 @@ class ClientScene:
         self._is_placed = bool(off < NEAR * away) or not self._settling
         return seen_from(pose, stage, robot)
 
+    @property
+    def overlays(self) -> Overlays:
+        """What is drawn on demand."""
+        return self._overlays
+
     def _key(self, key: PageKey) -> tuple[object, ...]:
         """What the scene depends on; a change has it rebuilt."""
         return key.student, key.robot, key.plane, self._look.dark, self._look.upright
@@ -200,6 +208,7 @@ class ClientScene:
         overlays.update(motion)
         self._steps.follow(snapshot)
         overlays.marks = self._steps.setup.marks
+        scene.mouse.pull_in(self.pull)
         scene.mouse.path_first = "editor" in self._steps.setup.controls
         overlays.follow(snapshot)
         scene.show_singular_zone("zone" in self.switches and self._robot.frame.p == 2)

@@ -81,6 +81,11 @@ class Mouse:
         self._covered: int | None = None
         self._point = DragByOffset(pointer)
 
+    def pull_in(self, plane: str) -> None:
+        """Pull end-points in the plane with this name, if the stage has it."""
+        if plane in self._stage.pulls:
+            self.pull = plane
+
     def connect_grips(self, grips: viser.BatchedMeshHandle) -> None:
         """Listen to the node by which end-points are pulled, with an instance for every robot."""
         grips.on_drag("left")(self._tip_dragged)

@@ -38,6 +38,7 @@ from onpath.app.channel.messages import (
 from onpath.app.channel.reading import NoPageMessage, read_message
 from onpath.app.channel.sheet_messages import ClassMessage, Request
 from onpath.app.classroom.admission import LONGEST_NAME
+from onpath.app.common.work_thread import WorkThread
 from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.snapshot import Motion, PathSnapshot
@@ -87,7 +88,8 @@ class PageData:
         self._class: ClassMessage | None = None
         self._files = PageFiles(own.post, context.code if context.keep_days else "")
         self._server = PageRequests(context, self._files.exporter)
-        self._form = PageForm(own.post)
+        self._thread = WorkThread("page")
+        self._form = PageForm(own.post, self._thread.submit)
         self._is_resized = self._skips = False
         self._requests, self._answers = deque[Request](), deque[Struct](maxlen=MOST_REQUESTS)
         self._lesson = self._measured = b""
@@ -100,6 +102,7 @@ class PageData:
     def close(self) -> None:
         """Start no further work. Thread-safe."""
         self._files.close()
+        self._thread.close()
         self._text.close()
 
     def follow(

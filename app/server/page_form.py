@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import ClassVar
 
+import numpy as np
 from msgspec import Struct
 from typing_extensions import override
 
@@ -17,12 +19,16 @@ from onpath.app.channel.messages import (
     SetField,
     ValuesMessage,
 )
+from onpath.app.common.background import Background, Submit
 from onpath.app.lab.commands import ChooseLaw, ChoosePath, PlacePoint, SelectPoint, Set, TypeLaw
 from onpath.app.lab.lab import Command, Lab
-from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of, robot_of
 from onpath.app.page.page import Page
+from onpath.app.scene.overlays import Overlays
+from onpath.app.scene.rank_nodes import largest
 from onpath.app.view.lab_form import (
     NO_STEP,
+    PULLS,
     SWITCHES,
     form_of,
     refusals_in,
@@ -30,13 +36,21 @@ from onpath.app.view.lab_form import (
     values_in,
 )
 from onpath.app.view.lesson_view import NO_SETUP, LessonView
+from onpath.app.view.notes import rank_note, tube_note
 from onpath.lessons.action_schema import StepSetup
 from onpath.lessons.course import Course
 from onpath.lessons.words import Words
 from onpath.models.control.laws.own import OWN
+from onpath.models.control.rank_test import rank_map
+from onpath.models.control.settable import parameters_from
 from onpath.models.control.sides import SIDES
+from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.parameters import Parameters
 
 _DRAWN = {switch_name(name): name for name in SWITCHES}
+TURNED = 0.05
+"""To which joint angles are rounded for the critical α, which varies slowly, [rad]."""
+MOST_LIMITS = 512  # critical values of α that are kept: those of a lap along a path, many times
 _COORDINATES = {"point_z1": "first", "point_z2": "second"}
 
 
@@ -57,13 +71,16 @@ class PageForm:
 
     Args:
         post: of the lab that the page may change.
+        submit: runs a function in another thread.
     """
 
-    def __init__(self, post: Callable[[Command], None]) -> None:
+    def __init__(self, post: Callable[[Command], None], submit: Submit) -> None:
         self._post, self.is_asked = post, False
         self._heard = dict[str, int]()
         self._own = deque[SetField]()  # what concerns the page alone
         self._typing = set[str]()  # sides for which a law is being typed
+        self._critical = Background[float](submit)
+        self._rank: tuple[object, str] = None, ""  # a path, and its least rank
         self.restart()
 
     def restart(self) -> None:
@@ -83,7 +100,7 @@ class PageForm:
             self.is_asked = True
             return
         name, value = message.name, message.value
-        if name in _DRAWN or not is_own:
+        if name in _DRAWN or name == "pull" or not is_own:
             self._own.append(message)
             return
         for command in self._commands(name, value):
@@ -116,6 +133,26 @@ class PageForm:
             if name == "alpha":  # which only that output uses
                 yield Set("output", "redefined")
 
+    def _critical_alpha(self, snapshot: PageSnapshot) -> float | None:
+        """The right robot's, if its output is one with an α; None while it is not known yet."""
+        robot, now = snapshot.key.robot, snapshot.parameters
+        link = ROBOTS[robot].flexible_link
+        if link is None or now["output"] != "redefined":
+            return None
+        beam = parameters_from(ROBOTS[robot].parameters, {name: now[name] for name in link.beam})
+        joints = TURNED * np.round(snapshot.joints[: link.joints] / TURNED)
+        key = robot, beam, tuple(joints.tolist())
+        self._critical.ask(key, lambda: _limit_of(*key))
+        return self._critical.value
+
+    def _least_rank(self, snapshot: PageSnapshot, words: Words) -> str:
+        """What the rank test says of the path."""
+        sampled = snapshot.edit.sampled
+        if sampled is not self._rank[0]:
+            ranks = rank_map(robot_of(snapshot), parameters_of(snapshot), sampled)
+            self._rank = sampled, f"{float(np.min(ranks)):.2f}"
+        return words("design.rank", number=self._rank[1])
+
     def news(
         self, snapshot: PageSnapshot, page: Page | None, course: Course, words: Words
     ) -> Iterator[Struct]:
@@ -131,6 +168,8 @@ class PageForm:
             if message.name in _DRAWN:
                 change = switches.add if message.value else switches.discard
                 change(_DRAWN[message.name])
+            elif message.name == "pull" and page is not None and message.value in PULLS:
+                page.pull = str(message.value)
             self._hear(message.name, message.number)
             heard[message.name] = message.number
         setup = _setup(snapshot, course, words)
@@ -141,7 +180,10 @@ class PageForm:
                 yield form
         self._forms = forms
         drawn = {name: name in switches for name in SWITCHES}
-        values = values_in(snapshot, drawn, self._typing, words)
+        values = values_in(snapshot, drawn, self._typing, words, self._critical_alpha(snapshot))
+        values["pull"] = PULLS[0] if page is None else page.pull
+        values["least_rank"] = self._least_rank(snapshot, words)
+        values |= _notes_on(None if page is None else page.overlays, snapshot, words)
         refused = refusals_in(snapshot)
         changed = dict[str, FieldValue]()
         if values != self._values:
@@ -152,6 +194,30 @@ class PageForm:
         if changed or why or new:
             self._values, self._refused, self._told = values, refused, heard
             yield ValuesMessage(changed, why, new)
+
+
+def _notes_on(
+    overlays: Overlays | None, snapshot: PageSnapshot, words: Words
+) -> dict[str, FieldValue]:
+    """What the form says of the drawings that are shown."""
+    notes: dict[str, FieldValue] = {"tube_sizes": "", "rank_scale": ""}
+    if overlays is None:
+        return notes
+    if (shape := overlays.shape) is not None:
+        steps = (shape.step, shape.degrees) if "grid" in overlays.switches else None
+        notes["tube_sizes"] = tube_note(shape.width, words, steps)
+    if (found := overlays.rank_map) is not None:
+        is_flexible = ROBOTS[snapshot.key.robot].flexible_link is not None
+        alpha = float(snapshot.parameters["alpha"]) if is_flexible else None
+        notes["rank_scale"] = rank_note(largest(found.values), alpha, words)
+    return notes
+
+
+@lru_cache(maxsize=MOST_LIMITS)
+def _limit_of(robot: str, parameters: Parameters, joints: tuple[float, ...]) -> float:
+    """The critical α of a robot with a flexible link; takes about 10 ms."""
+    link = ROBOTS[robot].flexible_link
+    return np.inf if link is None else link.critical_alpha(parameters, np.array(joints))
 
 
 def _setup(snapshot: PageSnapshot, course: Course, words: Words) -> StepSetup | None:

@@ -108,7 +108,10 @@ def choice_field(
     return FormField(name=name, kind="choice", label=label, options=offered, default=default)
 
 
-_PLAIN = ("form.changed", "form.is_on", "form.off", "form.use")
+_PLAIN = (
+    *("form.changed", "form.is_on", "form.off", "form.use"),
+    *("gains.across", "gains.along", "gains.rate", "gains.swing"),
+)
 _FILLED = {
     "form.back": ("value",),
     "form.back_lesson": ("value",),

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Literal
 
+from msgspec import structs
+
 from onpath.app.channel.messages import (
     FieldValue,
     FormField,
@@ -32,30 +34,32 @@ from onpath.app.lab.lab import Command
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of
 from onpath.app.view.forms import ELSEWHERE, drawing_field, setting_field, settings_in_form
 from onpath.app.view.laws import suitable
+from onpath.app.view.notes import NEVER, alpha_note, deflections, wall_forces
 from onpath.app.view.paths import outline, preset_label
+from onpath.app.view.poles import poles_of
 from onpath.app.view.robots import picture_of
 from onpath.lessons.action_schema import StepSetup
 from onpath.lessons.labels import robot_label, robot_text
-from onpath.lessons.sides import law_label, law_text, side_titles
+from onpath.lessons.sides import law_label, law_text
 from onpath.lessons.vocabulary.names import DRAWINGS
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.lab_settings import SETTINGS, LabSettings
-from onpath.models.control.law_poles import channels_of
 from onpath.models.control.laws.own import OWN, PATH_FOLLOWING, is_text
-from onpath.models.control.place import Place
 from onpath.models.control.settable import specs, values_of
 from onpath.models.control.sides import DEFAULT_LAWS, SIDES
-from onpath.models.errors import Message
 from onpath.models.paths.path_design import REACH, presets
 from onpath.models.systems.catalogue import ROBOTS
-from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
 
 SWITCHES = (*DRAWINGS, "zone", "start")
 """What a page can draw besides the robots: what lessons can name, the shading of the singular zone,
 and the start of the next run, which can be dragged."""
+OF_PAGE = ("pull", "tube_sizes", "rank_scale", "least_rank")
+"""Fields whose values the page knows; see app/server/page_form.py."""
 SHOWN = "show_"
 """Begins the names of the fields of those that no lesson names."""
+PULLS = ("path's plane", "horizontal plane")
+"""Planes in which the mouse can pull a robot in space; see `Stage.pulls` in app/scene."""
 NO_STEP = FormMessage(place="step", groups=())
 GROUPS: Mapping[str, Literal["first", "deeper"]] = {
     "setup": "first",
@@ -72,11 +76,12 @@ GROUP_OF = {
 }
 """Group of a declaration -> group of the form."""
 GROUP_OF_OTHERS = {
-    **dict.fromkeys(("pulse", "reset", "start_on_path", "show_start"), "hand"),
-    **dict.fromkeys(("poles", "defaults"), "gains"),
-    **dict.fromkeys(("add", "remove", "point", "point_z1", "point_z2"), "points"),
+    **dict.fromkeys(("pulse", "reset", "start_on_path", "show_start", "wall_forces"), "hand"),
+    **dict.fromkeys(("alpha_note", "deflection", "pull"), "robot"),
+    **dict.fromkeys(("poles", "pole_plane", "defaults"), "gains"),
+    **dict.fromkeys(("add", "remove", "point", "point_z1", "point_z2", "least_rank"), "points"),
     "identify": "reality",
-    **dict.fromkeys((*DRAWINGS, "show_zone", "view"), "view"),
+    **dict.fromkeys((*DRAWINGS, "tube_sizes", "rank_scale", "show_zone", "view"), "view"),
 }
 """Group of each field that is no declared setting."""
 FIRST = (
@@ -105,16 +110,26 @@ STATES = {
 CONTROLS = {
     "path": ("path", "rise"),
     "laws": tuple(name for side in SIDES for name in (side, f"typed_{side}")),
-    "wall": tuple(name for name, each in SETTINGS.items() if each.spec.group == "wall"),
+    "wall": (
+        *(name for name, each in SETTINGS.items() if each.spec.group == "wall"),
+        "wall_forces",
+    ),
     "start": (
         "show_start",
         *(name for name, each in SETTINGS.items() if each.spec.group == "start"),
         *("reset", "start_on_path"),
     ),
-    "flexible": ("output", "alpha", "larger"),
-    "show": DRAWINGS,
-    "editor": ("draw", "file", "undo", "redo", "add", "remove", "point", "point_z1", "point_z2"),
-    "gains": ("speed", "K1", "K2", "K3", "K4", "K5", "poles"),
+    "flexible": (
+        *("output", "alpha", "alpha_note", "deflection", "pull", "larger"),
+        *("plant", "modes", "rho", "frequency", "zeta"),
+        *("tip_damping", "tip_prediction", "tip_shaping", "tip_yielding"),
+    ),
+    "show": (*DRAWINGS, "tube_sizes", "rank_scale"),
+    "editor": (
+        *("draw", "file", "undo", "redo", "add", "remove", "point", "point_z1", "point_z2"),
+        *("least_rank", "show_zone"),
+    ),
+    "gains": ("speed", "K1", "K2", "K3", "K4", "K5", "poles", "pole_plane"),
 }
 """Controls of a lesson's step that stand for several fields."""
 
@@ -150,13 +165,18 @@ class _Lab:
 
 
 def values_in(
-    snapshot: PageSnapshot, drawn: Mapping[str, bool], typing: Iterable[str], words: Words
+    snapshot: PageSnapshot,
+    drawn: Mapping[str, bool],
+    typing: Iterable[str],
+    words: Words,
+    critical: float | None = None,
 ) -> dict[str, FieldValue]:
-    """The values of all fields.
+    """The values of all fields but those `OF_PAGE`.
 
     Args:
         drawn: which of `SWITCHES` are switched on.
         typing: sides for which a law is being typed.
+        critical: the critical α of a flexible link; None while it is not known.
     """
     laws, settings = snapshot.run.laws, snapshot.settings
     values: dict[str, FieldValue] = {**snapshot.parameters}
@@ -176,7 +196,17 @@ def values_in(
         values[f"typed_{side}"] = (law if typed else PATH_FOLLOWING).replace("; ", "\n")
         values[f"about_{side}"] = "" if values[side] == OWN else law_text(law, words)
     places = tuple(snapshot.places.of.items())
-    values["poles"] = _settling(parameters_of(snapshot), tuple(laws.items()), places, words)
+    values["poles"], values["pole_plane"] = poles_of(
+        parameters_of(snapshot), tuple(laws.items()), places, words
+    )
+    values["wall_forces"] = wall_forces(snapshot, words)
+    if ROBOTS[snapshot.key.robot].flexible_link is not None:
+        now = snapshot.parameters
+        values["critical_alpha"] = NEVER if critical is None else min(critical, NEVER)
+        values["alpha_note"] = alpha_note(
+            float(now["alpha"]), critical, int(now["modes"]), float(now["zeta"]), words
+        )
+        values["deflection"] = deflections(snapshot, words)
     return values
 
 
@@ -250,7 +280,7 @@ def _fields(lab: _Lab, marks: Mapping[str, FieldValue], words: Words) -> dict[st
     entry = ROBOTS[lab.robot]
     kind = entry.parameters
     robot = entry.make(kind())
-    known, defaults = specs(kind), LabSettings()
+    known, defaults, link = specs(kind), LabSettings(), entry.flexible_link
     usual = {**values_of(kind()), **NEWCOMER}
     chosen = dict(lab.laws)
     found: list[FormField] = [
@@ -287,19 +317,25 @@ def _fields(lab: _Lab, marks: Mapping[str, FieldValue], words: Words) -> dict[st
         if spec.group == "realism":
             where = next((n for n, names in SECTIONS.items() if name in names), "model")
             section = words(f"form.section_{where}")
+        elif link is not None and name in (*link.beam, *link.composite):
+            section = words("flexible.beam" if name in link.beam else "flexible.composite")
         mark = marks.get(name)
         field = setting_field(name, spec, words, default=default, mark=mark, section=section)
         found.append(field)
+    if link is not None:
+        found = list(_with_link(found, words))
     found += [
         _switch("show_start", "start.show", words),
         _button("pulse", words("gains.pulse"), Pulse(), words("gains.pulse_hint")),
         _button("reset", words("start.reset"), Reset()),
         _button("start_on_path", words("start.default"), StartOnPath()),
+        FormField(name="wall_forces", kind="note", label="", needs=((FormNeed("wall"),),)),
         FormField(name="poles", kind="note", label=""),
+        FormField(name="pole_plane", kind="poles", label=words("form.poles")),
         _button("defaults", words("gains.defaults"), ResetParameters()),
         *_point_fields(robot, lab.points, words),
         _button("identify", words("gains.identify"), Identify(), words("gains.identify_hint")),
-        *(drawing_field(name, words) for name in DRAWINGS),
+        *_drawing_fields(words),
         *((_switch("show_zone", "design.zone", words),) if robot.frame.p == 2 else ()),
         FormField(name="view", kind="button", label=words("run.view"), act={"is": "view"}),
     ]
@@ -341,6 +377,41 @@ def _point_fields(robot: Robot, count: int, words: Words) -> Iterator[FormField]
             factor=1e3,
             needs=((FormNeed("point"),),),
         )
+    yield FormField(name="least_rank", kind="note", label="")
+
+
+def _drawing_fields(words: Words) -> Iterator[FormField]:
+    """What can be drawn besides the robots, with notes on what is drawn."""
+    notes = {"grid": "tube_sizes", "rank": "rank_scale"}
+    for name in DRAWINGS:
+        yield drawing_field(name, words)
+        if name in notes:
+            tone = "ranks" if name == "rank" else ""
+            yield FormField(name=notes[name], kind="note", label="", tone=tone)
+
+
+def _with_link(fields: Iterable[FormField], words: Words) -> Iterator[FormField]:
+    """The settings of a robot with a flexible link, and what belongs to them."""
+    named = {field.name: field for field in fields}
+    alpha = named.pop("alpha")
+    for name, field in named.items():
+        yield field
+        if name == "output":
+            yield structs.replace(alpha, limit="critical_alpha")
+            yield FormField(name="alpha_note", kind="note", label="", needs=alpha.needs)
+            yield FormField(name="deflection", kind="note", label="")
+            yield _pull_field(words)
+
+
+def _pull_field(words: Words) -> FormField:
+    return FormField(
+        name="pull",
+        kind="choice",
+        label=words("flexible.pull"),
+        help=words("flexible.pull_hint"),
+        options=tuple(FormOption(value=each, label=words(f"pull.{each}")) for each in PULLS),
+        default=PULLS[0],
+    )
 
 
 def _path_field(robot: Robot, own: str, words: Words) -> FormField:
@@ -385,24 +456,3 @@ def _law_fields(robot: Robot, chosen: Mapping[str, str], words: Words) -> list[F
             FormField(name=f"about_{side}", kind="note", label="", tone=f"of_{side}"),
         ]
     return fields
-
-
-@lru_cache(maxsize=256)
-def _settling(
-    parameters: Parameters,
-    laws: tuple[tuple[str, str], ...],
-    places: tuple[tuple[str, Place], ...],
-    words: Words,
-) -> str:
-    """How the motion across and along settles, a line for each; cached, since a class mostly looks
-    at the same gains."""
-    titles, lines = side_titles(dict(laws), words), dict[str, None]()
-    for side, law in laws:
-        channels = channels_of(law, parameters, dict(places).get(side))
-        if isinstance(channels, Message):
-            lines[f"{titles[side]}: {words.sentence(channels)}"] = None
-            continue
-        for channel in channels:
-            name = words(f"gains.{channel.name}")
-            lines[f"{name}: {words.sentence(channel.behaviour())}"] = None
-    return "\n".join(lines)

@@ -659,7 +659,7 @@ design-coordinate = { $name } [mm]
 design-arrows = Pfeiltasten schieben den ausgewählten Punkt um 1 mm; N wählt den nächsten. Um einen Punkt zu ziehen, den die Spitze verdeckt, wähle ihn zuerst aus.
 design-slanted = Die Bahn liegt in der Ebene y₁ = b y₂ + d von (23). Was in (y₂, y₃) ein Kreis ist, ist im Raum eine Ellipse, wie im Artikel. Ihre Mitte liegt bei y₂ = 0 und der Höhe unten; die des Artikels, y₃ = ℓ₁, liegt außer Reichweite dieses Arms. Mit einer anderen Ebene beginnt der Lauf neu.
 design-slanted_circle = Ellipse von (23)
-design-rank = Rangtest (11) längs der Bahn: mindestens **{ $number }** von 1.
+design-rank = Rangtest (11) längs der Bahn: mindestens { $number } von 1.
 design-zone = Singuläre Zone zeigen
 design-zone_hint = Wo der Arm gestreckt oder gefaltet ist, Gl. (14)
 
@@ -687,7 +687,7 @@ flexible-title = Biegsamer Balken
 flexible-pull = Zugebene
 flexible-pull_hint = Die Ebene durch die Spitze, in der die Maus an ihr zieht
 flexible-beam = Balken und Regelstrecke
-flexible-anew = Mit einer anderen Regelstrecke oder Modenzahl beginnen die Roboter neu. *Werte nur als Beispiel.*
+flexible-anew = Mit einer anderen Regelstrecke oder Modenzahl beginnen die Roboter neu. Werte nur als Beispiel.
 flexible-composite = Zusammengesetzte Regelung
 flexible-alpha = α = { $alpha }; { $limit }
 flexible-computing = kritisches α: wird berechnet
@@ -701,7 +701,7 @@ flexible-of_beam =
 flexible-unused = die zusammengesetzte Regelung bringt die Spitze selbst auf die Bahn und braucht kein α
 flexible-unstable = Nulldynamik instabil
 flexible-deflections = Durchbiegung: { $each }; { $scale }
-flexible-deflection = { $robot } **{ $value } mm**
+flexible-deflection = { $robot } { $value } mm
 flexible-drawn = { $factor }× gezeichnet
 
 pull-path-s-plane = Bahnebene
@@ -1627,6 +1627,7 @@ form-off = aus
 form-no_number = Das ist keine Zahl. Möglich ist { $low } bis { $high }.
 form-range = Möglich ist { $low } bis { $high }.
 form-differs = { $value } wurde nicht übernommen.
+form-poles = Die Pole der Gesetze in der komplexen Ebene. Links der Achse klingt eine Bewegung ab, rechts von ihr wächst sie an.
 form-use = Verwenden
 form-group_setup = Aufbau
 form-group_hand = Hand und Bremse

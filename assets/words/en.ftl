@@ -574,7 +574,7 @@ design-coordinate = { $name } [mm]
 design-arrows = The arrow keys move the selected point by 1 mm; N selects the next one. To drag a point that the end-point covers, select it first.
 design-slanted = The path lies in the plane y₁ = b y₂ + d of (23). A circle in (y₂, y₃) is an ellipse in space, as in the paper. Its centre is at y₂ = 0 and the height below; the paper's, y₃ = ℓ₁, is out of this arm's reach. With another plane the run begins anew.
 design-slanted_circle = ellipse of (23)
-design-rank = Rank test (11) along the path: at least **{ $number }** of 1.
+design-rank = Rank test (11) along the path: at least { $number } of 1.
 design-zone = Show singular zone
 design-zone_hint = Where the arm is stretched or folded, eq. (14)
 
@@ -602,7 +602,7 @@ flexible-title = Flexible link
 flexible-pull = Pull in
 flexible-pull_hint = The plane, through the tip, in which the mouse pulls it
 flexible-beam = Beam and plant
-flexible-anew = Changing the plant or the modes restarts the robots. *Values illustrative.*
+flexible-anew = Changing the plant or the modes restarts the robots. Values illustrative.
 flexible-composite = Composite control
 flexible-alpha = α = { $alpha }; { $limit }
 flexible-computing = critical α: being computed
@@ -616,7 +616,7 @@ flexible-of_beam =
 flexible-unused = composite control puts the tip itself on the path and needs no α
 flexible-unstable = zero dynamics unstable
 flexible-deflections = Deflection: { $each }; { $scale }
-flexible-deflection = { $robot } **{ $value } mm**
+flexible-deflection = { $robot } { $value } mm
 flexible-drawn = drawn { $factor }×
 
 pull-path-s-plane = path's plane
@@ -1220,6 +1220,7 @@ form-off = off
 form-no_number = That is not a number. It can be from { $low } to { $high }.
 form-range = It can be from { $low } to { $high }.
 form-differs = { $value } was not taken.
+form-poles = The poles of the laws in the complex plane. Left of the axis a motion decays, right of it, it grows.
 form-use = Use
 form-group_setup = Set-up
 form-group_hand = Hand and brake

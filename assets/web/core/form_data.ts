@@ -17,10 +17,11 @@ export interface FormNeed {
     of?: (number | string | boolean)[]
 }
 
-/** A row of a form. Its value is told by its name; a note's is what it says. */
+/** A row of a form. Its value is told by its name; a note's is what it says. The value of `poles` has a line for each pole:
+ * its channel, its real and its imaginary part, [1/s]. */
 export interface FormField {
     name: string
-    kind: "button" | "choice" | "note" | "number" | "switch" | "text"
+    kind: "button" | "choice" | "note" | "number" | "poles" | "switch" | "text"
     label: string
     symbol?: string
     unit?: string
@@ -32,6 +33,8 @@ export interface FormField {
     high?: number
     /** range of a number. */
     step?: number
+    /** of a number: the name of the value above which it is unstable. */
+    limit?: string
     /** how many of `unit` make one unit of the value. */
     factor?: number
     scale?: "linear" | "log"
@@ -46,7 +49,8 @@ export interface FormField {
     mark?: number | string | boolean | null
     /** the command that a button sends. */
     act?: Record<string, unknown> | null
-    /** of a note or a button: "main", "warning" or none; of a note also the side whose colour it has: "of_left" or "of_right". */
+    /** of a note or a button: "main", "warning" or none; of a note also the side whose colour it has, "of_left" or "of_right",
+     * or "ranks", below the colours of the rank test's map. */
     tone?: string
     /** a heading above all fields of the same section. */
     section?: string

@@ -6,10 +6,13 @@ import type { FormField, FormOption } from "../core/form_data"
 import { Scale, typedNumber } from "../core/scales"
 import { said, written, type Texts } from "../core/words"
 import { icon } from "./icons"
+import { PolePlane } from "./pole_plane"
 
 const RESTS = 300 // [ms] after the last touch, for which the hand's value stays
 const TOLD = 5000 // [ms] for which a row says that the lab has another value than the hand wanted
 const PAGE = 10 // steps of Page Up and Page Down
+const LONG = 15 // letters from which a menu has a line of its own
+const WARNS = "⚠ " // begins a line that warns, as in app/view/poles.py
 
 export type Value = FormOption["value"]
 
@@ -166,8 +169,9 @@ export abstract class FieldRow {
 
     protected title(of: HTMLElement): void {
         const { symbol = "", unit, help = "" } = this.field
-        const typed = `${plain(symbol)} `, label = symbol && this.field.label.startsWith(typed) ? this.field.label.slice(typed.length) : this.field.label
-        of.replaceChildren(...(symbol ? [made("i", "symbol", symbol), " "] : []), label, ...(unit ? [" ", made("span", "unit", unit)] : []))
+        const typed = plain(symbol), all = this.field.label
+        const label = symbol && (all === typed || all.startsWith(`${typed} `)) ? all.slice(typed.length + 1) : all
+        of.replaceChildren(...(symbol ? [made("i", "symbol", symbol), label && " "] : []), label, ...(unit ? [" ", made("span", "unit", unit)] : []))
         this.element.title = help
     }
 
@@ -262,6 +266,9 @@ class NumberRow extends FieldRow {
         const shown = String(scale.isLog ? scale.place(number) : scale.clamped(number))
         if (slider.value !== shown) slider.value = shown
         slider.style.setProperty("--at", scale.place(number).toFixed(4))
+        const limit = this.field.limit ? this.form.host.value(this.field.limit) : undefined
+        this.track.classList.toggle("limited", limit !== undefined)
+        if (limit !== undefined) this.track.style.setProperty("--limit", scale.place(this.inUnits(limit)).toFixed(4))
         const text = `${this.digits(value)} ${this.field.unit ?? ""}`.trim()
         if (slider.ariaValueText !== text) slider.ariaValueText = text
         if (!this.typing && box.value !== this.digits(value)) box.value = this.digits(value)
@@ -387,6 +394,7 @@ class ChoiceRow extends OptionRow {
         const { select } = this
         select.replaceChildren(...options.map(({ label, help = "" }) => Object.assign(made("option", "", label), { title: help })))
         select.selectedIndex = -1
+        this.element.classList.toggle("wide", options.some(({ label }) => label.length > LONG))
     }
 
     protected show(value: Value): void {
@@ -553,7 +561,7 @@ class TextRow extends FieldRow {
     }
 }
 
-/** Lines of text, which are its value. */
+/** Lines of text, which are its value; a line may warn. */
 class NoteRow extends FieldRow {
     private readonly note = made("p", "")
     protected readonly inputs: HTMLElement[] = []
@@ -572,8 +580,32 @@ class NoteRow extends FieldRow {
     }
 
     protected show(value: Value): void {
-        tell(this.note, String(value))
+        const text = String(value)
+        this.element.hidden = text === ""
+        if (this.note.textContent === text) return
+        const lines = text.split("\n").map((line, i) => made("span", line.startsWith(WARNS) ? "warning" : "", i ? `\n${line}` : line))
+        this.note.replaceChildren(...lines)
+    }
+}
+
+/** The poles of the laws as a picture. */
+class PoleRow extends FieldRow {
+    private readonly plane = new PolePlane(this.form.host.texts)
+    protected readonly inputs: HTMLElement[] = []
+
+    constructor(field: FormField, form: RowForm, signal: AbortSignal) {
+        super(field, form, signal)
+        this.element.append(this.plane.element)
+        this.name()
+    }
+
+    words(): string { return this.field.label }
+
+    protected name(): void { this.plane.sheet.canvas.ariaLabel = this.field.label }
+
+    protected show(value: Value): void {
         this.element.hidden = value === ""
+        this.plane.show(String(value))
     }
 }
 
@@ -590,6 +622,7 @@ const KINDS = {
     button: ButtonRow,
     text: TextRow,
     note: NoteRow,
+    poles: PoleRow,
 }
 
 /** Which row a field has. */

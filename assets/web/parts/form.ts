@@ -114,7 +114,7 @@ export class Form implements RowForm {
     /** What can be set or done here now, with the title of its group; what opens elsewhere is not among it. */
     get settings(): (FormField & { group: string })[] {
         const all = (this.data?.groups ?? []).flatMap(({ title, fields }) => fields.map(field => ({ ...field, group: title })))
-        return all.filter(({ kind, act, needs }) => kind !== "note" && (kind !== "button" || act) && this.acts(needs))
+        return all.filter(({ kind, act, needs }) => kind !== "note" && kind !== "poles" && (kind !== "button" || act) && this.acts(needs))
     }
 
     /** Mark the row of a setting that is pointed at elsewhere; empty: none. */

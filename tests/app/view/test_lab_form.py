@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
@@ -17,9 +18,10 @@ from onpath.app.channel.messages import (
 from onpath.app.lab.commands import TypeLaw
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
+from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.server.page_form import PageForm
 from onpath.app.view.forms import ELSEWHERE
-from onpath.app.view.lab_form import form_of, refusals_in, values_in
+from onpath.app.view.lab_form import OF_PAGE, PULLS, form_of, refusals_in, values_in
 from onpath.lessons.action_schema import StepSetup
 from onpath.lessons.course import NO_LESSONS
 from onpath.lessons.words import ENGLISH, Words
@@ -29,6 +31,10 @@ from onpath.models.control.settable import specs
 from onpath.models.control.sides import SIDES
 from onpath.models.systems.catalogue import ROBOTS
 from tests.support.lab import loop_cache
+
+
+def at_once(work: Callable[[], None]) -> None:
+    work()
 
 
 def fields(form: FormMessage) -> list[Any]:
@@ -50,31 +56,51 @@ def test_a_lab_has_all_that_can_act_once_and_in_words(robot: str) -> None:
         assert all(each & {*values} for each in needs)
         drawn = {field.name for field in found if field.kind == "switch"} - {*SETTINGS}
         told = {field.name for field in found if field.kind != "button"}
-        assert told - drawn <= {*values} | {*SETTINGS}
+        assert told - drawn <= {*values, *SETTINGS, *OF_PAGE}
         assert all(field.label for field in found if field.kind != "note")
+        assert all(field.limit in values for field in found if field.limit)
         declared = {*known, *SETTINGS} - {*OWN_GAINS, *ELSEWHERE, "larger", "K4"}
         assert declared <= {*names}, declared - {*names}
     assert form_of(snapshot, None, words) is form_of(snapshot, None, words)  # told once
+
+
+@pytest.mark.parametrize("robot", ROBOTS)
+def test_the_mouse_pulls_in_the_planes_that_the_form_offers(robot: str) -> None:
+    entry = ROBOTS[robot]
+    snapshot = take_page_snapshot(Lab(loop_cache(), entry), 1.0)
+    offered = {field.name: field for field in fields(form_of(snapshot, None, ENGLISH))}.get("pull")
+    planes = stage_of(entry.make(entry.parameters())).pulls
+    assert (PULLS if offered else PULLS[:1]) == tuple(planes)
 
 
 def test_a_step_has_what_it_names_and_marks_its_values() -> None:
     snapshot = take_page_snapshot(Lab(loop_cache()), 1.0)
     setup = StepSetup(controls=("K1", "hold", "wall", "alpha"), set={"K1": 900.0})
     found = {field.name: field for field in fields(form_of(snapshot, setup, ENGLISH))}
-    assert list(found) == ["K1", "wall", "wall_z1", "wall_z2", "wall_angle", "controls"]
+    assert list(found) == [
+        "K1",
+        "wall",
+        "wall_z1",
+        "wall_z2",
+        "wall_angle",
+        "wall_forces",
+        "controls",
+    ]
     assert (found["K1"].mark, found["K1"].default) == (900.0, 400.0)
 
 
 def test_a_page_hears_of_a_value_when_it_counts_and_of_what_has_changed() -> None:
     lab = Lab(loop_cache())
-    form, switches = PageForm(lab.post), set[str]()
-    page: Any = SimpleNamespace(switches=switches)
+    form, switches = PageForm(lab.post, at_once), set[str]()
+    overlays = SimpleNamespace(shape=None, rank_map=None)
+    page: Any = SimpleNamespace(switches=switches, overlays=overlays, pull=PULLS[0])
 
     def news() -> list[Any]:
         found = list(form.news(take_page_snapshot(lab, 1.0), page, NO_LESSONS, ENGLISH))
         for each in found:
             if isinstance(each, ValuesMessage):
                 each.values.pop("poles", None)
+                each.values.pop("pole_plane", None)
         return found
 
     form.hear(AskForm(), True)
@@ -97,6 +123,10 @@ def test_a_page_hears_of_a_value_when_it_counts_and_of_what_has_changed() -> Non
     assert news()[0].values == {"tube": True} and switches == {"tube"}
     form.hear(SetField("show_zone", True, 10), True)
     assert news()[0].values == {"show_zone": True} and switches == {"tube", "zone"}
+    form.hear(SetField("pull", PULLS[1], 10), True)
+    assert news()[0].values == {"pull": PULLS[1]} and page.pull == PULLS[1]
+    form.hear(SetField("pull", "no plane", 11), True)
+    assert news()[0].values == {} and page.pull == PULLS[1]
     form.hear(SetField("K2", 55.0, 11), False)  # another lab is shown
     lab.drain()
     assert news() == [ValuesMessage({}, {}, {"K2": 11})]
@@ -108,7 +138,7 @@ def test_a_page_hears_of_a_value_when_it_counts_and_of_what_has_changed() -> Non
 
 def test_a_point_of_the_path_is_chosen_and_moved() -> None:
     lab = Lab(loop_cache())
-    form = PageForm(lab.post)
+    form = PageForm(lab.post, at_once)
 
     def told(name: str, value: FieldValue) -> dict[str, Any]:
         form.hear(SetField(name, value, 1), True)
