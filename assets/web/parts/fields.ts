@@ -11,7 +11,6 @@ import { PolePlane } from "./pole_plane"
 const RESTS = 300 // [ms] after the last touch, for which the hand's value stays
 const TOLD = 5000 // [ms] for which a row says that the lab has another value than the hand wanted
 const PAGE = 10 // steps of Page Up and Page Down
-const LONG = 15 // letters from which a menu has a line of its own
 const WARNS = "⚠ " // begins a line that warns, as in app/view/poles.py
 
 export type Value = FormOption["value"]
@@ -394,7 +393,6 @@ class ChoiceRow extends OptionRow {
         const { select } = this
         select.replaceChildren(...options.map(({ label, help = "" }) => Object.assign(made("option", "", label), { title: help })))
         select.selectedIndex = -1
-        this.element.classList.toggle("wide", options.some(({ label }) => label.length > LONG))
     }
 
     protected show(value: Value): void {
