@@ -39,6 +39,7 @@ from onpath.app.server.arrivals import PAGE_KEY
 from onpath.app.server.lab_server import LabServer
 from onpath.app.server.server_options import ServerOptions
 from onpath.app.simulation.frame_length import FRAME
+from onpath.app.viser_adapter.data_channel import SUBPROTOCOL as DATA
 from onpath.app.viser_adapter.frame_channel import MOST_UNSENT
 from onpath.app.viser_adapter.secure_server import Limits, make_server
 from tests.bench.client_protocol import CAMERA, SUBPROTOCOL, answer, packed, unpacked
@@ -64,13 +65,17 @@ class Guest:
     def __init__(self, server: LabServer, inside: bool = True) -> None:
         before = set(feeds(server))
         self.own = OwnSocket(f"ws://127.0.0.1:{server.server.get_port()}")
-        self.socket = websockets.sync.client.connect(
-            f"ws://127.0.0.1:{server.server.get_port()}",
-            subprotocols=[Subprotocol(SUBPROTOCOL)],
-            max_size=None,
-            compression=None,
-            close_timeout=0.5,
-        )
+        try:
+            self.socket = websockets.sync.client.connect(
+                f"ws://127.0.0.1:{server.server.get_port()}",
+                subprotocols=[Subprotocol(SUBPROTOCOL)],
+                max_size=None,
+                compression=None,
+                close_timeout=0.5,
+            )
+        except InvalidStatus:
+            self.own.close()  # else it keeps a lab
+            raise
         threading.Thread(target=self._read, daemon=True).start()
         self.send("ViewerCameraMessage", **CAMERA)
         if not inside:
@@ -432,16 +437,25 @@ def _let_in(server: LabServer) -> Guest | None:
 
 @pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="reads /proc")
 def test_800_connections_in_a_row(server: LabServer, witness: Witness, quiet_log: None) -> None:
-    """Some leave at once, some during the handshake, some after it, politely or not."""
+    """Some leave at once, some during the handshake, some after it, politely or not.
+
+    Others open a page's own websocket and never greet.
+    """
     port = server.server.get_port()
     camera = frames(packed("ViewerCameraMessage", **CAMERA))
+    subprotocols = ["", SUBPROTOCOL, SUBPROTOCOL, SUBPROTOCOL, DATA]
     labs, threads, used = len(server.thread.labs), threading.active_count(), memory()
     with witness.served():
         for number in range(800):
-            way = number % 4
-            raw = knock(port) if way else socket.create_connection(("127.0.0.1", port))
+            way = number % 5
+            raw = (
+                knock(port, subprotocols[way])
+                if way
+                else socket.create_connection(("127.0.0.1", port))
+            )
             if way > 1:
                 raw.recv(1 << 12)
+            if way in (2, 3):
                 raw.sendall(camera)
             if way == 3:
                 raw.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
