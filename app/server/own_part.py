@@ -11,5 +11,5 @@ from onpath.app.exports.standalone.page_style import page_style
 @cache
 def own_part() -> bytes:
     """A <style> and a <script> element."""
-    style, script = page_style("web/lab.css"), inlined("web/onpath.js")
+    style, script = page_style("web/lab.css"), inlined("web/lab.js")
     return render("web/lab.html", style=style, script=script).encode()

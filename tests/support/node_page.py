@@ -107,7 +107,7 @@ def judging_page() -> NodePage:
     page = NodePage()
     page.set_content(
         f'{parts}<script type="application/json" id="data">{json.dumps(data)}</script>'
-        f"<script>{asset_path('web/onpath.js').read_text('utf-8')}</script>"
+        f"<script>{asset_path('web/site.js').read_text('utf-8')}</script>"
     )
     return page
 

@@ -87,7 +87,7 @@ def _write_shared(folder: Path) -> None:
     shared = folder / SHARED
     (shared / "kernels").mkdir(parents=True)
     (shared / "pictures").mkdir()
-    for name in ("on.js", "onpath.js", "icon.svg", "math.woff2", "math-licence.txt"):
+    for name in ("on.js", "site.js", "icon.svg", "math.woff2", "math-licence.txt"):
         shutil.copy(asset_path(f"web/{name}"), shared)
     (shared / "site.css").write_text(site_style(), "utf-8")
 

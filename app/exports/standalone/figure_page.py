@@ -38,7 +38,7 @@ def figure_page(
         picture: what is shown where no script runs, as a PNG file.
         without: what a recorded run had: parts of standalone-recorded_… in the catalogues.
     """
-    names, script = " / ".join(law_label(law, words) for law in figure.laws), "web/onpath.js"
+    names, script = " / ".join(law_label(law, words) for law in figure.laws), "web/figure.js"
     data = json_block(figure_data(figure, words, numbers))
     text, hint = words("standalone.no_script"), _hint(figure, words, without)
     return _page(names, words, title, picture, text, hint=hint, data=data, script=inlined(script))

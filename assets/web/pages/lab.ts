@@ -253,7 +253,7 @@ function sliderOf(gain: string): Element | null {
 }
 
 /** Show our part of the page as soon as the lab has told of itself, whether or not viser's has come. */
-export function showLab(): void {
+function showLab(): void {
     const root = document.documentElement
     const scheme = new Scheme()
     const engine = new RemoteEngine(() => scheme.dark, webgl.plain), connection = new Connection(engine)
@@ -316,3 +316,5 @@ class Scheme {
         engine.send({ is: "dark", on: this.dark })
     }
 }
+
+showLab()

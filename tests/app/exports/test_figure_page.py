@@ -105,7 +105,7 @@ def test_a_page_is_small_the_same_every_time_and_names_no_other_place(tmp_path: 
     assert page == figure_page(chosen("five_bar", paths=CURVES), ENGLISH)
     assert len(page.encode()) < 400_000
     assert "default-src 'none'" in html.unescape(page)
-    around = page.replace(asset_path("web/onpath.js").read_text("utf-8"), "")
+    around = page.replace(asset_path("web/figure.js").read_text("utf-8"), "")
     assert not re.findall(r"(?:src|href|url)\s*[=(]|https?:|import\(", around)
 
 
@@ -192,11 +192,12 @@ def test_one_law_and_paths_of_one_s_own() -> None:
     assert "my oval" in page and "<title>Mine</title>" in page
 
 
-def test_what_runs_was_built_from_these_sources() -> None:
+@pytest.mark.parametrize("name", ["figure", "lab", "site"])
+def test_what_runs_was_built_from_these_sources(name: str) -> None:
     """After a change: cd assets/web; npm ci; npm run build."""
     sources = sorted(asset_path("web").glob("*/*.ts"))
     text = b"".join(file.read_bytes() for file in sources)
-    built = asset_path("web/onpath.js").read_text("utf-8")
+    built = asset_path(f"web/{name}.js").read_text("utf-8")
     assert built.splitlines()[0] == f"// sources: {hashlib.sha256(text).hexdigest()}"
 
 

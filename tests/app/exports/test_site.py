@@ -123,7 +123,7 @@ def test_each_figure_of_a_site_is_small(site: Path) -> None:
             kernels = site / "site" / "kernels" / f"{figure['module']}.js"
             assert len(json.dumps(figure)) + kernels.stat().st_size < FIGURE, page.name
             found += 1
-    assert found >= 20 and (site / "site" / "onpath.js").stat().st_size < FIGURE
+    assert found >= 20 and (site / "site" / "site.js").stat().st_size < FIGURE
 
 
 PAGES = asset_path("web") / "pages"
