@@ -24,6 +24,7 @@ from onpath.lessons.problems import near
 from onpath.lessons.record import Record
 from onpath.lessons.schema import Lesson
 from onpath.lessons.sides import ROLES, law_label
+from onpath.lessons.vocabulary.names import DRAWINGS
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.lab_settings import step_specs
 from onpath.models.control.laws.registry import LAWS
@@ -38,7 +39,6 @@ CONTROLS = {
     "hold": "run.hold_both",
     "editor": "controls.editor",
     "gains": "gains.title",
-    "show": "show.title",
     "flexible": "flexible.title",
     "identify": "gains.identify",
     "start": "start.title",
@@ -239,6 +239,7 @@ def labels_of(name: str, words: Words) -> set[str]:
         parameter_label(name, known[name], words) for known in map(_specs, ROBOTS) if name in known
     }
     found |= {law_label(name, words)} if name in LAWS else set()
+    found |= {words(f"show.{each}") for each in DRAWINGS} if name == "show" else set()
     text = words.get(CONTROLS.get(name, name), "")
     return found | ({re.sub(r" \[.*\]$", "", text)} if text else set())
 

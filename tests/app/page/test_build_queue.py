@@ -6,7 +6,6 @@ import threading
 from collections.abc import Iterator
 from contextlib import ExitStack
 from types import SimpleNamespace
-from typing import Any
 
 import pytest
 
@@ -15,12 +14,9 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.page import Page
-from onpath.app.page.panels import dialog
-from onpath.app.page.panels.keys import Keys
 from onpath.app.scene import build_queue
 from onpath.app.scene.build_queue import LONG, REST, BuildLock
 from onpath.app.server.lab_server import LabServer
-from onpath.lessons.words import ENGLISH, Words
 from tests.support.own_socket import feeds
 from tests.support.student import Student
 from tests.support.waiting import wait_for
@@ -208,72 +204,3 @@ def test_no_page_is_built_for_a_client_that_leaves_while_waiting(
     wait_for_views(server, 0)
     assert all(lab.display is None for lab in server.thread.labs)
     assert not server.registry.held()
-
-
-def held_up(
-    monkeypatch: pytest.MonkeyPatch, owner: Any, name: str
-) -> tuple[threading.Event, threading.Event]:
-    """Let a function wait: events that it has been called, and that it may go on."""
-    act, begun, over = getattr(owner, name), threading.Event(), threading.Event()
-
-    def act_later(*what: Any) -> None:
-        begun.set()
-        assert over.wait(60)
-        act(*what)
-
-    monkeypatch.setattr(owner, name, act_later)
-    return begun, over
-
-
-def test_no_widget_arrives_before_its_callbacks_are_set(
-    server: LabServer, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Pressed before, it would do nothing. The keys are set last."""
-    begun, over = held_up(monkeypatch, Keys, "renew")
-    with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
-        student.open()
-        student.read(begun.is_set)
-        for _ in range(20):  # viser may take some turns of its event loop
-            student.read_what_was_sent()
-        widgets = len(student.widgets)
-        over.set()
-        student.read(lambda: student.has_widget(ENGLISH("controls.help")))
-    assert widgets == 0
-
-
-def test_a_window_arrives_as_a_whole(server: LabServer, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A button that closes it, pressed before, would take it from under those that follow."""
-    begun, over = held_up(monkeypatch, dialog, "mark_closing")
-    opens = ENGLISH("lesson.open", number="1")
-    with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
-        student.open()
-        student.set(ENGLISH("lesson.lessons"), True)
-        student.read(begun.is_set)
-        for _ in range(20):
-            student.read_what_was_sent()
-        early = student.has_widget(opens)
-        over.set()
-        student.read(lambda: student.has_widget(ENGLISH("help.close")))
-        assert not early and student.has_widget(opens)
-
-
-def test_a_key_works_while_the_page_is_built_anew(
-    server: LabServer, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The browser has the page before until the next one is complete."""
-    with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
-        student.open()
-        student.read(lambda: student.has_widget(ENGLISH("controls.help")))
-        (scheduled,) = server.thread.labs
-        lab = scheduled.lab
-        begun, over = held_up(monkeypatch, Keys, "renew")
-        lab.post(c.SetLanguage("de"))
-        student.read(begun.is_set)
-        student.press("N")
-        student.read(lambda: lab.simulation.editor.selected == 0)
-        over.set()
-        student.read(lambda: student.has_widget(Words("de")("controls.help")))
-        student.press("N")
-        student.read(lambda: lab.simulation.editor.selected == 1)
-        keys = [w for w in student.widgets.values() if w.get("hotkey") == "N"]
-        student.read(lambda: [key["label"] for key in keys] == [Words("de")("key.next")])

@@ -337,8 +337,7 @@ def test_a_projector_shows_it_in_a_lesson_too(lessons: LabServer) -> None:
         lab = wait_for(lambda: lessons.registry.find(student.code), 30.0).scheduled.lab
         for command in (c.OpenLesson("01-path-or-timetable"), c.Set("presenting", True)):
             lab.post(command)
-        student.read(lambda: student.sees("Step 1 of") and not student.has_widget("Undo"))
-        student.read(lambda: student.has_widget("Tube"))
-        student.set("Tube", True)
+        student.read(lambda: student.sees("Step 1 of") and student.state["presenting"])
+        student.settle("tube", True)
         (client,) = lessons.server.get_clients().values()
         student.read(lambda: client.scene.get_handle_by_name("/show/tube") is not None)

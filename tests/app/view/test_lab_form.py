@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from onpath.app.channel.messages import (
     AskForm,
@@ -15,22 +18,25 @@ from onpath.app.channel.messages import (
     SetField,
     ValuesMessage,
 )
-from onpath.app.lab.commands import TypeLaw
+from onpath.app.lab.commands import AddPoint, ChooseLaw, ChoosePath, TypeLaw
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.server.page_form import PageForm
 from onpath.app.view.forms import ELSEWHERE
 from onpath.app.view.lab_form import OF_PAGE, PULLS, form_of, refusals_in, values_in
+from onpath.app.view.laws import suitable
 from onpath.lessons.action_schema import StepSetup
 from onpath.lessons.course import NO_LESSONS
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.closed_loop.lab_settings import SETTINGS
-from onpath.models.control.laws.registry import OWN_GAINS
+from onpath.models.control.laws.own import OWN, PATH_FOLLOWING
+from onpath.models.control.laws.registry import LAWS, OWN_GAINS
 from onpath.models.control.settable import specs
-from onpath.models.control.sides import SIDES
+from onpath.models.control.sides import DEFAULT_LAWS, LEFT, RIGHT, SIDES
+from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS
-from tests.support.lab import loop_cache
+from tests.support.lab import FRAME, do, loop_cache, new_lab, run
 
 
 def at_once(work: Callable[[], None]) -> None:
@@ -153,6 +159,125 @@ def test_a_point_of_the_path_is_chosen_and_moved() -> None:
     assert told("point", "a text")["point"] == 3
     assert told("point", 99)["point"] == 3
     assert told("point", 0)["point"] == 0
+
+
+@settings(max_examples=4)
+@given(robot=st.sampled_from(list(ROBOTS)), data=st.data())
+def test_gains_of_single_laws_are_there_while_a_side_has_the_law(
+    robot: str, data: st.DataObject
+) -> None:
+    lab = Lab(loop_cache(), ROBOTS[robot])
+    offered = st.sampled_from(suitable(lab.simulation.robot))
+    laws = {side: data.draw(offered) for side in SIDES}
+    snapshot = take_page_snapshot(lab, 1.0)
+    snapshot = replace(snapshot, run=replace(snapshot.run, laws=laws))
+    shown = {field.name for field in fields(form_of(snapshot, None, ENGLISH))}
+    acting = {gain for law in laws.values() for gain in LAWS[law].gain_names}
+    assert shown & {*OWN_GAINS} == acting & {*OWN_GAINS}
+
+
+@pytest.mark.parametrize("robot", ROBOTS)
+def test_a_slider_reaches_its_value_and_both_ends_in_whole_steps(robot: str) -> None:
+    snapshot = take_page_snapshot(Lab(loop_cache(), ROBOTS[robot]), 1.0)
+    values = values_in(snapshot, {}, (), ENGLISH)
+    for field in fields(form_of(snapshot, None, ENGLISH)):
+        if field.kind == "number" and field.scale == "linear":
+            steps = (field.high - field.low) / field.step
+            assert steps == pytest.approx(round(steps), abs=1e-6), field.name
+            value = values[field.name]
+            assert isinstance(value, float | int)
+            assert field.low <= value <= field.high, field.name
+
+
+def test_a_path_of_ones_own_is_an_option_while_it_is_followed() -> None:
+    lab = Lab(loop_cache())
+
+    def shown() -> tuple[FieldValue, list[FieldValue]]:
+        snapshot = take_page_snapshot(lab, 1.0)
+        field = next(f for f in fields(form_of(snapshot, None, ENGLISH)) if f.name == "path")
+        chosen = values_in(snapshot, {}, (), ENGLISH)["path"]
+        return chosen, [option.value for option in field.options]
+
+    assert shown() == ("circle", [*presets()])
+    do(lab, AddPoint())
+    own, options = shown()
+    assert options == [*presets(), own] and own not in presets()
+    do(lab, ChoosePath("ellipse"))
+    assert shown() == ("ellipse", [*presets()])
+
+
+class Typing:
+    """A page on which a law is typed; its lab moves on when the test says so."""
+
+    def __init__(self) -> None:
+        self.lab = new_lab(0.1)
+        self.form = PageForm(self.lab.post)
+        self.form.hear(AskForm(), True)
+        self.values, self.refused = dict[str, FieldValue](), dict[str, str]()
+        self._number = 0
+
+    def set(self, name: str, value: FieldValue) -> None:
+        self._number += 1
+        self.form.hear(SetField(name, value, self._number), True)
+
+    def follow(self, frames: int = 4) -> None:
+        """Advance the lab, and hear what the page is told."""
+        for _ in range(frames):
+            run(self.lab, FRAME)
+            snapshot = take_page_snapshot(self.lab, 1.0)
+            for each in self.form.news(snapshot, None, NO_LESSONS, ENGLISH):
+                if isinstance(each, ValuesMessage):
+                    self.values |= each.values
+                    self.refused |= each.refused
+
+
+SLOW = "across = -K1*xi - K2*dxi; along = -K5*(dtheta - speed/2)"
+
+
+def test_who_types_a_law_begins_with_path_following_and_the_lab_keeps_its_law() -> None:
+    page = Typing()
+    page.set(LEFT, OWN)
+    page.follow()
+    assert page.values[LEFT] == OWN and page.lab.simulation.laws == DEFAULT_LAWS
+    assert page.values[f"typed_{LEFT}"] == PATH_FOLLOWING.replace("; ", "\n")
+    assert page.values[RIGHT] == DEFAULT_LAWS[RIGHT]
+    page.set(LEFT, "path_following")
+    page.follow()
+    assert page.values[LEFT] == page.lab.simulation.laws[LEFT] == "path_following"
+
+
+def test_a_typed_law_is_used_and_one_that_is_refused_changes_nothing() -> None:
+    page = Typing()
+    page.set(LEFT, OWN)
+    page.set(f"typed_{LEFT}", "across = -K1*xii; along = 0")
+    page.follow()
+    assert "did you mean xi?" in page.refused[f"typed_{LEFT}"]
+    assert page.values[LEFT] == OWN and page.lab.simulation.chosen_laws == DEFAULT_LAWS
+    page.set(f"typed_{LEFT}", SLOW.replace("; ", "\n"))
+    page.follow()
+    assert page.lab.simulation.laws == {**DEFAULT_LAWS, LEFT: SLOW}
+    assert page.refused[f"typed_{LEFT}"] == "" and page.values[LEFT] == OWN
+
+
+def test_an_own_law_right_after_another_one_stays_chosen() -> None:
+    page = Typing()
+    page.set(LEFT, "waiting_clock")
+    page.set(LEFT, OWN)
+    while page.lab.simulation.laws[LEFT] != "waiting_clock":
+        page.follow(1)
+    page.follow()
+    assert page.values[LEFT] == OWN
+
+
+def test_a_law_from_elsewhere_is_shown() -> None:
+    page = Typing()
+    do(page.lab, TypeLaw(LEFT, SLOW))
+    page.follow()
+    assert page.values[LEFT] == OWN
+    assert page.values[f"typed_{LEFT}"] == SLOW.replace("; ", "\n")
+    do(page.lab, ChooseLaw(LEFT, DEFAULT_LAWS[LEFT]))
+    page.follow()
+    assert page.values[LEFT] == DEFAULT_LAWS[LEFT]
 
 
 @pytest.mark.parametrize("side", SIDES)

@@ -19,12 +19,15 @@ from onpath.app.lab.lesson_state import LessonState
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.view.comparing import MOST, compare_sheet, compared
 from onpath.app.view.keys import KEYS, shown_keys
+from onpath.app.view.laws import law_sheet, suitable
 from onpath.app.view.lessons import lesson_sheet
 from onpath.app.view.robots import robot_sheet
 from onpath.app.view.sheets import SheetContext, sheet_of
 from onpath.assets.messages import languages
 from onpath.lessons.progress import Notes, Progress
 from onpath.lessons.words import ENGLISH, Words
+from onpath.models.control.laws.expressions import FUNCTIONS
+from onpath.models.control.laws.own import SPACE, VIEW
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.paths.curves import circle
 from onpath.models.paths.path_design import presets
@@ -106,6 +109,23 @@ def test_a_lesson_is_finished_when_its_steps_are_seen_and_its_tasks_passed() -> 
     assert begun.done < all_seen.done < 1 and not all_seen.finished
     done = card({name: Notes(seen=len(lesson.steps), tasks=tasks)})
     assert done.done == 1 and done.finished
+
+
+@pytest.mark.parametrize("language", languages())
+@pytest.mark.parametrize("robot", ["five_bar", "spatial_arm"])
+def test_the_sheet_of_laws_tells_every_law_and_every_name(robot: str, language: str) -> None:
+    made = ROBOTS[robot].make(ROBOTS[robot].parameters())
+    spatial = made.system.p == 3
+    sheet = law_sheet(made, Words(language))
+    assert [law.name for law in sheet.laws] == suitable(made)
+    for law in sheet.laws:
+        assert LAWS[law.name].source.split(",")[0] in law.source
+        assert all((law.label, law.does, law.good, law.limits, law.objection))
+    names = {name for each in sheet.names for name in each.names.split(", ")}
+    assert names == {*VIEW, *(SPACE if spatial else ())}
+    text = " ".join(sheet.own)
+    assert all(name in text for name in FUNCTIONS)
+    assert ("across2" in text) == spatial
 
 
 def test_compared_laws_have_numbers_and_a_curve_whose_largest_value_they_state() -> None:

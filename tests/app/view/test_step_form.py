@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from unittest.mock import MagicMock
-
 import pytest
 
 from onpath.app.lab.commands import ChooseRobot
@@ -12,7 +10,7 @@ from onpath.app.lab.dry_runs.course_check import lab_at
 from onpath.app.lab.plot_rows import row_data
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
-from onpath.app.page.panel_factory import PanelFactory
+from onpath.app.view.lab_form import NO_STEP, form_of
 from onpath.lessons.action_schema import StepSetup
 from onpath.lessons.behaviour.marks import Behaviour
 from onpath.lessons.words import ENGLISH, Words
@@ -20,41 +18,27 @@ from tests.support.built_in import built_in_course
 from tests.support.lab import do, loop_cache, new_lab
 
 COURSE = built_in_course()[0]
+ELSEWHERE = {"hold", "past", "plots", "robot"}  # always on the page: below the robots, at the top
 
 
-def labels(scene: StepSetup, first: PageSnapshot, words: Words) -> set[str]:
-    """All labels and titles of the widgets that a step's page has."""
-    gui, other = MagicMock(), MagicMock()
-    factory = PanelFactory(
-        gui=gui,
-        words=words,
-        post=other,
-        exporter=other,
-        files=other,
-        submit=other,
-        scene=other,
-        overlays=other,
-        context=other,
-        reset_view=other,
-        draw=other,
-    )
-    factory.of_step(scene, first)
-    added = [call for call in gui.mock_calls if call[0].startswith("add_")]
-    given = [each for _, some, named in added for each in (*some, *named.values())]
-    return {each for each in given if isinstance(each, str)}
+def labels(setup: StepSetup, first: PageSnapshot, words: Words) -> set[str]:
+    """The labels of all controls that a step's page has."""
+    fields = [field for group in form_of(first, setup, words).groups for field in group.fields]
+    options = {option.label for field in fields for option in field.options}
+    return {field.label for field in fields} | options
 
 
-def plots(scene: StepSetup, first: PageSnapshot) -> set[str]:
+def plots(setup: StepSetup, first: PageSnapshot) -> set[str]:
     """Names of the plots under the stage in a step: rows over time, and the phase plane."""
     possible = {row["name"] for row in row_data(first.key.fields, False, ENGLISH)}
-    return (possible | {"phase"}) & {"distance", *scene.plots}
+    return (possible | {"phase"}) & {"distance", *setup.plots}
 
 
-def is_shown(said: Behaviour, scene: StepSetup, first: PageSnapshot, words: Words) -> bool:
+def is_shown(said: Behaviour, setup: StepSetup, first: PageSnapshot, words: Words) -> bool:
     """Whether a step's page has the plot or the control of a mark."""
     if said.verb == "plot":
-        return said.name in plots(scene, first)
-    known, shown = labels_of(said.name, words), labels(scene, first, words)
+        return said.name in plots(setup, first)
+    known, shown = labels_of(said.name, words), labels(setup, first, words)
     return any(label in text for text in shown for label in known)
 
 
@@ -75,13 +59,26 @@ def test_a_plot_and_a_control_that_a_text_names_are_on_its_page() -> None:
     assert seen > 10
 
 
+@pytest.mark.thorough
+def test_every_control_that_a_step_names_is_on_its_page() -> None:
+    for versions in COURSE.lessons.values():
+        lesson = versions["en"]
+        for index, step in enumerate(lesson.steps):
+            named = {*lesson.scene_at(index).controls} - ELSEWHERE
+            first = take_page_snapshot(lab_at(lesson, step, loop_cache()), 1.0) if named else None
+            for name in named:
+                assert first is not None
+                alone = StepSetup(controls=(name,))
+                assert form_of(first, alone, ENGLISH) is not NO_STEP, (lesson.name, index, name)
+
+
 @pytest.mark.parametrize("robot", ["two_link_arm", "cart_pendulum"])
-def test_every_steps_page_is_built_whatever_robot_is_chosen(robot: str) -> None:
+def test_every_step_has_a_form_whatever_robot_is_chosen(robot: str) -> None:
     """Another robot lacks some of the parameters among the controls, and of the plots."""
-    lab, words = new_lab(), Words("en")
+    lab = new_lab()
     do(lab, ChooseRobot(robot))
     first = take_page_snapshot(lab, 1.0)
     for versions in COURSE.lessons.values():
         lesson = versions["en"]
         for index in range(len(lesson.steps)):
-            labels(lesson.scene_at(index), first, words)
+            form_of(first, lesson.scene_at(index), ENGLISH)
