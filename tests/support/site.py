@@ -20,8 +20,8 @@ import pytest
 
 from onpath.app.storage.database_url import DATABASE
 from tests.support.checkout import ROOT
-from tests.support.class_tab import ClassTab
 from tests.support.lab_process import LabProcess, free_ports
+from tests.support.teacher_tab import TeacherTab
 from tests.support.waiting import wait_for
 
 HOST, ORIGIN = "lab.example.org", "https://lab.example.org"
@@ -42,9 +42,9 @@ class Site:
         connection.request("GET", path, headers={"Host": host, **headers})
         return connection.getresponse()
 
-    def student(self, prefix: str, origin: str = ORIGIN) -> ClassTab:
+    def student(self, prefix: str, origin: str = ORIGIN) -> TeacherTab:
         """A browser under a prefix, "c/CODE" or "l/NAME"."""
-        return ClassTab(f"ws://{HOST}/{prefix}", self.port, Origin=origin)
+        return TeacherTab(f"ws://{HOST}/{prefix}", self.port, Origin=origin)
 
     def serving(self) -> LabProcess:
         """The process that has connections; there must be one only."""

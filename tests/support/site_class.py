@@ -13,9 +13,9 @@ from onpath.app.classroom.admission import class_code_of, class_id_of
 from onpath.app.common.access_codes import shown
 from onpath.app.storage.records import Records
 from onpath.app.storage.schema import classes
-from tests.support.class_tab import ClassTab
 from tests.support.lab_process import LabProcess
 from tests.support.site import Site
+from tests.support.teacher_tab import TeacherTab
 from tests.support.waiting import wait_for
 
 RECONNECTION = 0.5  # [s] between the tries of a page that has lost its server, about
@@ -72,7 +72,7 @@ class Class:
         self.all = [stack.enter_context(running.site.student(self.prefix)) for _ in range(3)]
         self.teacher, self.ada, self.bob = self.all
         self.names = {self.ada: "Ada", self.bob: "Bob"}
-        self.open: list[ClassTab] = []
+        self.open: list[TeacherTab] = []
 
     def until(self, condition: Callable[[], Any]) -> None:
         """Wait for something while all read what they are sent, and connect again when cut off."""
@@ -91,7 +91,7 @@ class Class:
         for each in [*self.names, self.teacher]:
             each.open()
             self.open.append(each)
-            self.until(lambda each=each: each.asks_for_a_name)
+            self.until(lambda each=each: each.may_join)
         for student, name in self.names.items():
             student.join(name)
             self.until(lambda student=student: student.is_member)
@@ -114,6 +114,6 @@ class Class:
 
     def is_back(self) -> bool:
         """Whether everybody is in the class, at one process."""
-        students = [s.sees(name) and s.is_member for s, name in self.names.items()]
+        students = [s.is_member and s.seat["name"] == name for s, name in self.names.items()]
         served = [p for p in self.running.site.processes if p.connections()]
         return self.teacher_sees_both() and all(students) and len(served) == 1

@@ -239,6 +239,40 @@ class Student:
         self.read(lambda: what in self.told)
         return self.told[what]
 
+    @property
+    def seat(self) -> dict[str, Any]:
+        """The lab's place in a class; see `ClassMessage`."""
+        return self.told.get("class", {})
+
+    @property
+    def is_member(self) -> bool:
+        """Whether the page says that its lab is in the class."""
+        return self.seat.get("place") == "member"
+
+    @property
+    def may_join(self) -> bool:
+        """Whether the page asks for a nickname."""
+        return self.seat.get("place") == "guest"
+
+    def join(self, name: str, code: str = "") -> dict[str, Any]:
+        """Ask to join a class; returns what has come of it: see `SeatAnswer`.
+
+        Args:
+            code: of the class; only needed where the page's address has none.
+        """
+        return self._sit({"is": "join", "code": code, "name": name})
+
+    def teach(self, key: str) -> dict[str, Any]:
+        """Ask for the teacher's page with a key; returns why not and the like, or nothing."""
+        return self._sit({"is": "teach", "key": key})
+
+    def _sit(self, request: dict[str, Any]) -> dict[str, Any]:
+        self.read(lambda: self.seat)
+        self.told.pop("seat", None)
+        self.tell(request)
+        self.read(lambda: "seat" in self.told or self.kept.get("onpath_teacher"))
+        return self.told.get("seat", {})
+
     def tell(self, *messages: dict[str, Any]) -> None:
         """Send messages or commands through the page's own websocket."""
         assert self._data is not None

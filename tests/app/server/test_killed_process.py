@@ -13,9 +13,9 @@ from math import inf
 import pytest
 
 from onpath.app.classroom.class_state import SETTLED
-from tests.support.class_tab import ClassTab
 from tests.support.site import needs_nginx
 from tests.support.site_class import KEYS, Class, Running, quiet, return_to
+from tests.support.teacher_tab import TeacherTab
 
 pytestmark = [pytest.mark.thorough, needs_nginx]
 
@@ -38,7 +38,7 @@ def come_in(running: Running, key: str) -> Iterator[Class]:
         return_to(ended, running, klass.prefix)
 
 
-def move(klass: Class, who: ClassTab, seconds: float) -> dict[float, float]:
+def move(klass: Class, who: TeacherTab, seconds: float) -> dict[float, float]:
     """Let somebody move a slider.
 
     Returns:
@@ -55,7 +55,7 @@ def move(klass: Class, who: ClassTab, seconds: float) -> dict[float, float]:
     return sent
 
 
-def lose_the_process(klass: Class, who: ClassTab, seconds: float = LOST) -> None:
+def lose_the_process(klass: Class, who: TeacherTab, seconds: float = LOST) -> None:
     """The process is killed when somebody moves a slider; all come back on the other one.
 
     Args:

@@ -16,9 +16,9 @@ from onpath.app.server.lab_server import LabServer
 from onpath.app.server.server_options import ServerOptions
 from onpath.assets.messages import languages, preferred
 from onpath.lessons.words import ENGLISH, Words
-from tests.support.class_tab import ClassTab
 from tests.support.lab import loop_cache
 from tests.support.student import Student
+from tests.support.teacher_tab import TeacherTab
 
 HEADERS = {
     "": "en",
@@ -68,7 +68,7 @@ def test_the_teachers_page_follows_the_teachers_language_whoever_is_shown() -> N
     room, german = Classroom(), Words("de")
     server = LabServer("127.0.0.1", 0, loop_cache(), ServerOptions(classrooms=[room]))
     address = f"ws://127.0.0.1:{server.server.get_port()}/c/{room.code}"
-    with ClassTab(address) as student, ClassTab(address) as teacher:
+    with TeacherTab(address) as student, TeacherTab(address) as teacher:
         student.open()
         student.join("Ada")
         student.read(lambda: student.is_member)

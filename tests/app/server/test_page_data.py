@@ -24,9 +24,9 @@ from onpath.app.viser_adapter.data_channel import SUBPROTOCOL
 from tests.bench.client_protocol import SEEN, hello
 from tests.bench.simulated_browser import SEES
 from tests.support import waiting
-from tests.support.class_tab import ClassTab
 from tests.support.own_socket import feeds
 from tests.support.student import Student
+from tests.support.teacher_tab import TeacherTab
 
 WAIT = 30.0
 wait_for = partial(waiting.wait_for, seconds=WAIT)
@@ -272,7 +272,7 @@ def test_a_teacher_is_told_of_the_lab_that_is_shown_and_cannot_act_on_it(
     address: str, room: Classroom
 ) -> None:
     address = f"{address}/c/{room.code}"
-    with ClassTab(address) as ada, ClassTab(address) as teacher:
+    with TeacherTab(address) as ada, TeacherTab(address) as teacher:
         ada.open()
         ada.join("Ada")
         teacher.open()

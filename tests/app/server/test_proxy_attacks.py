@@ -140,10 +140,10 @@ def test_no_spelling_of_its_address_moves_a_class(running: Running) -> None:
             stranger = stack.enter_context(running.site.student(f"c/{spelling}"))
             with suppress(InvalidStatus):  # most are refused
                 stranger.open()
-                stranger.read(lambda stranger=stranger: stranger.asks_for_a_name)
+                stranger.read(lambda stranger=stranger: stranger.may_join)
             with running.site.student(klass.prefix) as student:
                 student.open()
-                student.read(lambda student=student: student.asks_for_a_name)
+                student.read(lambda student=student: student.may_join)
             assert closed(klass) == []
         klass.until(klass.teacher_sees_both)
         assert serving.connections() >= len(klass.all)
@@ -161,7 +161,7 @@ def test_no_broken_request_is_noticed_by_anybody_else(running: Running) -> None:
                 assert [status(site.port, path) for path in PATHS] == [302, 200, 200, 200]
                 with site.student(f"c/{CODES[0]}") as newcomer:  # connects at the first try
                     newcomer.open()
-                    newcomer.read(lambda newcomer=newcomer: newcomer.asks_for_a_name)
+                    newcomer.read(lambda newcomer=newcomer: newcomer.may_join)
                 assert closed(klass) == []
             least = ROUNDS * len([*requests()])
             assert [each.result() for each in attacks] == [least] * len(ATTACKERS)

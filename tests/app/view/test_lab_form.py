@@ -177,13 +177,11 @@ def test_gains_of_single_laws_are_there_while_a_side_has_the_law(
 
 
 @pytest.mark.parametrize("robot", ROBOTS)
-def test_a_slider_reaches_its_value_and_both_ends_in_whole_steps(robot: str) -> None:
+def test_every_number_is_at_first_within_the_ends_of_its_slider(robot: str) -> None:
     snapshot = take_page_snapshot(Lab(loop_cache(), ROBOTS[robot]), 1.0)
     values = values_in(snapshot, {}, (), ENGLISH)
     for field in fields(form_of(snapshot, None, ENGLISH)):
-        if field.kind == "number" and field.scale == "linear":
-            steps = (field.high - field.low) / field.step
-            assert steps == pytest.approx(round(steps), abs=1e-6), field.name
+        if field.kind == "number":
             value = values[field.name]
             assert isinstance(value, float | int)
             assert field.low <= value <= field.high, field.name

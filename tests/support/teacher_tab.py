@@ -1,4 +1,4 @@
-"""A page of a class, with viser's widgets: what a class has there has no other place yet."""
+"""A teacher's page, which has viser's widgets still."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from typing_extensions import override
 from tests.support.student import Student
 
 
-class ClassTab(Student):
-    """One tab at the address of a class, or at that of a server with classes.
+class TeacherTab(Student):
+    """One tab with its widgets.
 
     Attributes:
         widgets: properties of the widgets on the page, by id.
@@ -24,26 +24,6 @@ class ClassTab(Student):
     def open(self) -> None:
         self.widgets.clear()
         super().open()
-
-    def join(self, name: str) -> None:
-        """Join the class at the page's address, as soon as it asks for a nickname."""
-        self.change("Nickname", name)
-        self.change("Join the class")
-
-    @property
-    def is_member(self) -> bool:
-        """Whether the page says that it is in the class."""
-        return self.sees("You are in the class as")
-
-    @property
-    def asks_for_a_name(self) -> bool:
-        """Whether one can join here."""
-        return self.has_widget("Nickname")
-
-    def teach(self, key: str) -> None:
-        """Open the teacher's page."""
-        self.change("Teacher's key", key)
-        self.change("Open the teacher's page")
 
     def find(self, label: str) -> dict[str, Any]:
         """Wait for a widget whose label or option begins with `label`; the shortest is meant."""
