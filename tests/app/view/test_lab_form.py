@@ -209,7 +209,7 @@ class Typing:
 
     def __init__(self) -> None:
         self.lab = new_lab(0.1)
-        self.form = PageForm(self.lab.post)
+        self.form = PageForm(self.lab.post, at_once)
         self.form.hear(AskForm(), True)
         self.values, self.refused = dict[str, FieldValue](), dict[str, str]()
         self._number = 0
