@@ -185,8 +185,8 @@ def test_arrows_on_a_slider_move_that_alone(tab: Tab) -> None:
 
 def test_keys_move_the_handle_that_looks_back(tab: Tab) -> None:
     lab = tab.lab
-    wait_for(lambda: lab.simulation.time > 2.5)
     tab.ask(c.SetRunning(False))
+    tab.elapse(3.0)
     handle, time = tab.page.get_by_role("slider", name="Look back"), lab.simulation.time
     tab.focus(handle)
     for key, ago in {"PageDown": 1.0, "ArrowLeft": 1.1, "ArrowRight": 1.0}.items():
@@ -237,14 +237,16 @@ def test_what_is_typed_into_a_field_does_nothing_else(tab: Tab) -> None:
     lab = tab.lab
     before, box = lab.asked, tab.number("K1")
     tab.focus(box)
-    for key in ("d", "x", "h", "w", "r", "g", "u", "Home", "Control+k"):
+    box.press("Control+A")
+    for key in ("d", "x", "h", "w", "r", "g", "u", "Home"):
         tab.page.keyboard.press(key)
+    expect(box).to_have_value("dxhwrgu")
+    tab.page.keyboard.press("Escape")
+    tab.page.keyboard.press("Control+k")
     expect(tab.page.get_by_role("dialog")).to_be_visible()  # the search
     tab.page.keyboard.type("rhx")
     tab.page.keyboard.press("Escape")
-    expect(box).to_have_value("dxhwrgu")
-    tab.focus(box)
-    tab.page.keyboard.press("Escape")
+    tab.page.get_by_role("dialog").wait_for(state="detached")
     assert asked_since(tab, before) == 0 and lab.simulation.running
 
 

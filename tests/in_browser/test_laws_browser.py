@@ -40,7 +40,8 @@ def test_a_law_is_chosen_while_the_robot_moves(tab: Tab) -> None:
     tab.choose("Law, left", "Waiting clock")
     wait_for(lambda: simulation.laws == {**DEFAULT_LAWS, LEFT: "waiting_clock"})
     assert simulation.run_number == run and simulation.time > 0.5 and simulation.running
-    expect(page.get_by_role("note").get_by_text(LAWS["waiting_clock"].text)).to_be_visible()
+    told = page.locator("#op-panel [data-kind=note]")
+    expect(told.get_by_text(LAWS["waiting_clock"].text)).to_be_visible()
     expect(page.get_by_role("heading", name="Waiting clock")).to_be_visible()
     expect(page.locator("#op-strip").get_by_text("Waiting clock", exact=True)).to_be_visible()
     tab.choose("Law, right", "Waiting clock")
@@ -59,6 +60,7 @@ def test_the_menu_follows_the_lab_and_lists_what_suits_the_robot(tab: Tab) -> No
     tab.ask(c.ChooseLaw(RIGHT, "set_point"))
     expect(chosen).to_have_text("Set point")
     tab.ask(c.ChooseRobot("flexible"))
+    wait_for(lambda: tab.simulation.entry.name == "flexible")
     tab.wait_until_built()
     expect(chosen).to_have_text("Set point")
     offered = menu.locator("option").all_inner_texts()
@@ -81,8 +83,7 @@ def test_an_own_law_is_typed_and_a_typo_changes_nothing(tab: Tab) -> None:
     said = "line 1, column 14: there is no 'xii': did you mean xi?"
     expect(page.get_by_role("alert").get_by_text(said)).to_be_visible()
     assert simulation.laws == DEFAULT_LAWS and simulation.running
-    box.press("ArrowUp")
-    box.press("Home")
+    box.press("Control+Home")
     for _ in "across = -K1*xi":
         box.press("ArrowRight")
     box.press("Delete")

@@ -88,9 +88,10 @@ def test_going_through_a_lesson_leaves_no_error_in_the_console(tab: Tab) -> None
     assert said == []
 
 
-def test_what_a_step_speaks_of_is_on_the_first_screen(tab: Tab) -> None:
+def test_what_a_step_speaks_of_is_in_its_card(tab: Tab) -> None:
     take(tab, 6)
     for name in ("K1", "K2", "K5", "Speed"):
+        tab.slider(name).scroll_into_view_if_needed()
         expect(tab.slider(name)).to_be_in_viewport()
     expect(tab.button("Hold both back")).to_be_in_viewport()
 
@@ -121,23 +122,6 @@ def test_no_gap_is_left_for_the_hidden_buttons_on_a_telephone(
     }"""
     wait_for(lambda: all(0 <= gap < 16 for gap in tab.page.evaluate(gaps)))
     context.close()
-
-
-@pytest.mark.parametrize("presenting", [False, True])
-def test_the_legend_of_a_step_s_plot_is_seen_whole(browser: Browser, presenting: bool) -> None:
-    """Also that of both motors of both robots."""
-    server = LabServer("127.0.0.1", 0, LoopCache())
-    width, height = (1920, 1080) if presenting else (1280, 800)
-    context = browser.new_context(viewport={"width": width, "height": height})
-    tab = Tab(server, context, draws=False)
-    tab.ask(c.Set("presenting", presenting))
-    tab.wait_until_built()
-    take(tab, 4, "03-the-five-bar")
-    names = tab.page.locator(".u-legend tr")
-    expect(names.filter(has_text="u2")).to_have_count(2)
-    for name in names.filter(has_text="u").all():
-        expect(name).to_be_in_viewport(ratio=1)  # and within what may be scrolled
-    server.stop()
 
 
 def test_a_teachers_key_is_not_shown_while_it_is_typed(browser: Browser) -> None:
