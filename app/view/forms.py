@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
+from msgspec import structs
+
 from onpath.app.channel.messages import FieldValue, FormField, FormNeed, FormOption
 from onpath.lessons.labels import option_label, parameter_help, parameter_label, parameter_unit
 from onpath.lessons.words import Words
@@ -81,6 +83,12 @@ def _instead(need: Need) -> Iterator[FormNeed]:
     yield FormNeed(name=need.name, of=need.of)
     for other in need.instead:
         yield from _instead(other)
+
+
+def with_limit(alpha: FormField) -> tuple[FormField, FormField]:
+    """The field of α on a page that knows its critical value, and the note that says it."""
+    note = FormField(name="alpha_note", kind="note", label="", needs=alpha.needs)
+    return structs.replace(alpha, limit="critical_alpha"), note
 
 
 def drawing_field(name: str, words: Words, mark: bool | None = None) -> FormField:

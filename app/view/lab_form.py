@@ -7,8 +7,6 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Literal
 
-from msgspec import structs
-
 from onpath.app.channel.messages import (
     FieldValue,
     FormField,
@@ -32,7 +30,13 @@ from onpath.app.lab.commands import (
 from onpath.app.lab.commands.command_codec import message_of
 from onpath.app.lab.lab import Command
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of
-from onpath.app.view.forms import ELSEWHERE, drawing_field, setting_field, settings_in_form
+from onpath.app.view.forms import (
+    ELSEWHERE,
+    drawing_field,
+    setting_field,
+    settings_in_form,
+    with_limit,
+)
 from onpath.app.view.laws import suitable
 from onpath.app.view.notes import NEVER, alpha_note, deflections, wall_forces
 from onpath.app.view.paths import outline, preset_label
@@ -397,8 +401,7 @@ def _with_link(fields: Iterable[FormField], words: Words) -> Iterator[FormField]
     for name, field in named.items():
         yield field
         if name == "output":
-            yield structs.replace(alpha, limit="critical_alpha")
-            yield FormField(name="alpha_note", kind="note", label="", needs=alpha.needs)
+            yield from with_limit(alpha)
             yield FormField(name="deflection", kind="note", label="")
             yield _pull_field(words)
 

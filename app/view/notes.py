@@ -13,18 +13,26 @@ NEVER = 1e9
 """Stands for a limit that there is not."""
 
 
-def alpha_note(alpha: float, critical: float | None, modes: int, zeta: float, words: Words) -> str:
+def alpha_note(
+    alpha: float,
+    critical: float | None,
+    modes: int,
+    zeta: float,
+    words: Words,
+    key: str = "flexible.critical",
+) -> str:
     """From which α on the zero dynamics are unstable, and whether they are.
 
     Args:
         critical: α; infinity if there is none up to 1, None while it is being computed.
         modes, zeta: of the beam, on which it depends, and their damping ratio.
+        key: of the sentence that says where that is.
     """
     if critical is None:
         return words("flexible.computing")
     text = words("flexible.none")
     if math.isfinite(critical):
-        text = words("flexible.critical", critical=f"{critical:.2f}")
+        text = words(key, critical=f"{critical:.2f}")
     text += f" ({words('flexible.of_beam', modes=modes, zeta=f'{zeta:g}')})"
     return f"{text}\n{WARNS}{words('flexible.unstable')}" if alpha > critical else text
 

@@ -693,6 +693,7 @@ flexible-alpha = α = { $alpha }; { $limit }
 flexible-computing = kritisches α: wird berechnet
 flexible-none = kritisches α: keines bis 1
 flexible-critical = kritisches α = { $critical }, hier und in Ruhe
+flexible-critical_on_path = kritisches α = { $critical }, das kleinste auf dieser Bahn, in Ruhe
 flexible-of_beam =
     { $modes ->
         [one] 1 Mode

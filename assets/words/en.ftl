@@ -608,6 +608,7 @@ flexible-alpha = α = { $alpha }; { $limit }
 flexible-computing = critical α: being computed
 flexible-none = critical α: none up to 1
 flexible-critical = critical α = { $critical }, here and at rest
+flexible-critical_on_path = critical α = { $critical }, the least on this path, at rest
 flexible-of_beam =
     { $modes ->
         [one] 1 mode

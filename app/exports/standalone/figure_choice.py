@@ -89,6 +89,11 @@ class FigureChoice:
         return self.bends or "drag" in self.controls
 
     @property
+    def flexes(self) -> bool:
+        """Whether α changes and has a critical value."""
+        return "alpha" in (*self.sliders, *self.changing) and self.entry.flexible_link is not None
+
+    @property
     def entry(self) -> RobotEntry:
         """The entry in the catalogue."""
         return ROBOTS[self.robot]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import gzip
 import math
 from base64 import b64encode
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict
 from typing import Any
 
@@ -28,6 +28,7 @@ from onpath.app.lab.path_editor import BLEND, HALVINGS
 from onpath.app.lab.plot_rows import row_data
 from onpath.app.lab.plot_samples import sample_layout
 from onpath.app.view.captions import FULL, OFF, RETURNS
+from onpath.app.view.notes import NEVER, alpha_note
 from onpath.lessons.labels import path_label
 from onpath.lessons.sides import law_text, law_titles
 from onpath.lessons.words import Words
@@ -61,6 +62,7 @@ def figure_numbers(figure: FigureChoice) -> dict[str, Any]:
     """What takes long to compute, and is the same in all languages."""
     return {
         "paths": [_path(figure, name, curve) for name, curve in figure.paths.items()],
+        "critical": _critical(figure),
         "box": _box(figure),
         "poles": {
             "interval": 1 / figure.parameters.control_rate,
@@ -121,11 +123,14 @@ def common_data(figure: FigureChoice, words: Words, numbers: Mapping[str, Any]) 
         "rows": row_data(sample_layout(robot).fields, figure.parameters.across == LEVEL_SET, words),
         "efforts": _efforts(robot),
         "poles": numbers["poles"],
+        "critical": _limits(figure, numbers["critical"], words),
         "edit": _EDIT,
         "module": numbers["module"],
     }
 
 
+POSES = 13
+"""Places on a path, from -π to π, at which the critical α is looked for; it varies slowly."""
 PLOTTED = ("speed", "theta_rate", "xi", "xi_rate", "u", "force")
 """Fields of a log row that are plotted, besides those that are drawn."""
 NUDGE = 0.001  # [m], as app/view/keys.py has it
@@ -178,6 +183,34 @@ def _efforts(robot: Robot) -> list[dict[str, Any]]:
         {"motor": i, "joint": joint.name, "most": joint.effort, "unit": joint.unit}
         for i, joint in enumerate(robot.chain.joints)
         if math.isfinite(joint.effort)
+    ]
+
+
+def _critical(figure: FigureChoice) -> list[float]:
+    """The least critical α of a robot with a flexible link on each path, if α changes."""
+    link, robot, own = figure.entry.flexible_link, figure.machine, figure.parameters
+    if link is None or not figure.flexes:
+        return []
+    theta = np.linspace(-np.pi, np.pi, POSES)
+    rest = [
+        robot.rest(robot.frame.lift(raised(curve, own).at(theta)))[:, : link.joints]
+        for curve in figure.paths.values()
+    ]
+    return [min(link.critical_alpha(own, joints) for joints in poses) for poses in rest]
+
+
+def _limits(figure: FigureChoice, critical: Iterable[float], words: Words) -> list[dict[str, Any]]:
+    """For each path the critical α, and what is said below it and beyond it."""
+    values = value_of(figure.parameters, "modes"), value_of(figure.parameters, "zeta")
+    return [
+        {
+            "limit": min(limit, NEVER),
+            "notes": [
+                alpha_note(alpha, limit, *values, words, key="flexible.critical_on_path")
+                for alpha in (-NEVER, NEVER)
+            ],
+        }
+        for limit in critical
     ]
 
 

@@ -10,7 +10,7 @@ import msgspec
 from onpath.app.channel.messages import FormField, FormGroup, FormMessage
 from onpath.app.exports.standalone.figure_choice import FigureChoice
 from onpath.app.exports.standalone.setting_places import page_values
-from onpath.app.view.forms import choice_field, setting_field
+from onpath.app.view.forms import choice_field, setting_field, with_limit
 from onpath.lessons.labels import path_label
 from onpath.lessons.sides import law_titles
 from onpath.lessons.words import Words
@@ -30,9 +30,13 @@ def figure_form(
         place: in a step, the figure's values are marked, and one goes back to them.
         more: further fields.
     """
-    fields = [setting_of(figure, name, words, place) for name in figure.sliders]
+    fields = list[FormField]()
+    for name in figure.sliders:
+        field = setting_of(figure, name, words, place)
+        fields += with_limit(field) if name == "alpha" and figure.flexes else (field,)
     if "poles" in figure.controls:
         fields.append(FormField(name="poles", kind="note", label=""))
+        fields.append(FormField(name="pole_plane", kind="poles", label=words("form.poles")))
     choices = (*_choices_of_path(figure, words), *_choices_of_law(figure, words))
     group = FormGroup(
         name="figure", title=words("lesson.controls"), fields=(*choices, *fields, *more)

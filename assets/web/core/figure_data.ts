@@ -102,6 +102,8 @@ export interface FigureData extends Texts<"language" | "module"> {
     strip: number
     /** The torque limits that the robot's file states. */
     efforts: EffortData[]
+    /** For each path the least α on it from which on the zero dynamics are unstable, and what is said below and beyond. */
+    critical: { limit: number; notes: [string, string] }[]
     poles: Numbers<"interval" | "size" | "steps" | "slow"> & { behaviours: string[] }
     edit: Numbers<"piece" | "fine" | "sums" | "row" | "samples" | "outline" | "grid"> &
         Numbers<"halvings" | "blend" | "nudge"> & { checks: string[] }

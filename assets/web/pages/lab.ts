@@ -114,7 +114,7 @@ class Face {
         const step = lesson.lesson ? lesson.steps[lesson.index] : undefined
         this.strip.follows(step)
         this.showForms()
-        this.transport.subdued = step?.kind === "run" && !lesson.notes?.played[String(lesson.index)]
+        this.transport.subdued = this.column.leads
     }
 
     /** Show the settings: those of the lab in the panel, those of a step in its card. */

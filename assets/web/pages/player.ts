@@ -137,6 +137,7 @@ export class Player implements Robots {
     private put(stage: Stage, step: StepData): void {
         const { page } = this
         this.stage = stage
+        this.subdue()
         stage.figure.strip.follows(step)
         if (page.figures[step.figure]!.form.groups.length) this.view?.offer(stage.figure.form.element)
         stage.simulation.remake = (name, value) => void this.remake(name, value)
@@ -255,6 +256,12 @@ export class Player implements Robots {
         if (view?.form && !view.committed) pager.append(view.form.commit)
         if (!this.playing) this.run()
         view?.formulas()
+        this.subdue()
+    }
+
+    /** One main button a moment: the step's own, or the brake. */
+    private subdue(): void {
+        if (this.stage) this.stage.figure.transport.subdued = this.view?.leads ?? false
     }
 
     /** Show what was predicted, and what happened. */

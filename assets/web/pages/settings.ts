@@ -18,7 +18,12 @@ export class LocalSettings implements FormHost {
         const { simulation } = this, side = this.side(name)
         if (side) return side.law
         if (name === "path") return simulation.path
-        return name === "poles" ? simulation.lines().join("\n") : simulation.values[name]
+        if (name === "poles") return simulation.poles.map(({ line }) => line).join("\n")
+        if (name === "pole_plane") return simulation.poles.flatMap(({ points }) => points).join("\n")
+        const critical = simulation.data.critical[simulation.path]
+        if (critical && name === "critical_alpha") return critical.limit
+        if (critical && name === "alpha_note") return critical.notes[Number(simulation.values["alpha"]) > critical.limit ? 1 : 0]
+        return simulation.values[name]
     }
 
     set(name: string, value: Value): void {

@@ -82,6 +82,8 @@ export class Column implements Robots {
         this.student.changed = () => this.show()
     }
 
+    /** Whether the open step has the main thing to press now. */
+    get leads(): boolean { return this.open && (this.view?.leads ?? false) }
     get open(): boolean { return !this.element.hidden }
     get ready(): boolean { return this.engine.connected }
 

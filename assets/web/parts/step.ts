@@ -82,6 +82,11 @@ export class StepView {
     get waits(): boolean { return this.prediction !== null && this.notes.answers[String(this.prediction.step)] === undefined }
     /** Whether its own prediction was committed. */
     get committed(): boolean { return given(this.notes.answers[String(this.index)]) }
+    /** Whether the main thing to press now is the step's own: to commit its prediction, or to let it happen. */
+    get leads(): boolean {
+        const { kind, script } = this.page.steps[this.index]!
+        return (this.form !== null && !this.committed) || (kind === "run" && Boolean(script) && !this.notes.played[String(this.index)])
+    }
     /** Whether the step's run has been seen; a run that only the lab can play is seen in its picture. */
     get happened(): boolean {
         return Boolean(this.notes.played[String(this.index)]) || !this.page.steps[this.index]!.script

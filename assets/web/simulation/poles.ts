@@ -1,8 +1,16 @@
-// What the page says about the poles of the laws, as in app/page/panels/gains_panel.py.
+// What the page says about the poles of the laws, as in app/view/poles.py.
 
 import type { FigureData } from "../core/figure_data"
 import { said, significant, written } from "../core/words"
 import type { Kernels } from "./kernels"
+
+/** The motion across the path, or along it: what is said of it, and a line for each pole, as in app/view/poles.py. */
+export interface Channel {
+    line: string
+    points: string[]
+}
+
+const SETTLES = 3 // behaviours before those of a motion that does not
 
 export class Poles {
     private readonly sizes = this.data.poles
@@ -13,31 +21,33 @@ export class Poles {
 
     constructor(private readonly data: FigureData, private readonly kernels: Kernels) {}
 
-    /** A line for the motion across the path, and one for the motion along it. */
-    lines(settings: number): string[] {
-        const { kernels, first, roots, result, data, sizes } = this
+    of(settings: number): Channel[] {
+        const { kernels, first, roots, result, sizes } = this
         kernels.call("polynomials", settings, ...this.polynomials, first)
         return this.polynomials.map((polynomial, i) => {
             kernels.copy(first, roots, sizes.size)
             kernels.loop("roots", [roots, polynomial, roots, roots], sizes.steps)
             kernels.numbers[result] = sizes.interval
             kernels.call("settling", roots, polynomial, result, result + 1)
-            return `${said(data, i ? "gains.along" : "gains.across")}: ${this.line()}`
+            return this.channel(i ? "along" : "across")
         })
     }
 
-    private line(): string {
+    private channel(name: "across" | "along"): Channel {
         const { data, result } = this
         const { slow, behaviours } = this.sizes
         const found = [...this.kernels.numbers.subarray(result + 1, result + 2 * slow + 5)]
         const [code, time, damping] = found.slice(2 * slow + 1) as [number, number, number]
         const values = { damping: written(data, damping, 2), seconds: significant(data, time, 2) }
         const kind = said(data, `behaviour.${behaviours[code]}`, values)
-        const says = code < 3 ? said(data, "behaviour.settles", { ...values, kind }) : kind
-        const poles = Array.from({ length: found[0]! }, (_, i) => [found[2 * i + 1]!, found[2 * i + 2]!] as const)
+        const says = code < SETTLES ? said(data, "behaviour.settles", { ...values, kind }) : kind
+        const all = Array.from({ length: found[0]! }, (_, i) => [found[2 * i + 1]!, found[2 * i + 2]!] as const)
             .reverse() // the slowest last, as in the lab
-            .filter(([, imaginary]) => imaginary >= 0)
+        const poles = all.filter(([, imaginary]) => imaginary >= 0)
             .map(([real, y]) => significant(data, real, 3) + (y ? ` ± ${significant(data, y, 3)}i` : ""))
-        return `${says}; ${said(data, "gains.poles", { poles: poles.join(", ") })}`
+        return {
+            line: `${code < SETTLES ? "" : "⚠ "}${said(data, `gains.${name}`)}: ${says}; ${said(data, "gains.poles", { poles: poles.join(", ") })}`,
+            points: all.map(pole => `${name} ${pole.join(" ")}`),
+        }
     }
 }

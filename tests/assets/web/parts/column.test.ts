@@ -76,3 +76,20 @@ test("a button sends what stands in it, and keys turn pages unless they are type
     assert.deepEqual(sent[0], { do: "GoToStep", by: 1 })
     assert.equal(sent.length, 1)
 })
+
+test("a step leads while its prediction or its run is to come, and then no longer", () => {
+    const { column, hear } = opened()
+    const step = { kind: "run", optional: false, running: true, script: { do: [], seconds: 1 }, figure: -1, values: { lengths: [], paths: [] }, blocks: [] }
+    const steps = (kind: string, script: unknown = step.script) => [{ ...step, kind, script }] as unknown as LessonMessage["steps"]
+    const sections = { "0": `<h2 id="title-1">One</h2>` }
+    hear({ sections, steps: steps("run") })
+    assert.ok(column.leads)
+    hear({ sections, steps: steps("run"), notes: { ...noNotes(), played: { 0: true } } as unknown as LessonMessage["notes"] & object })
+    assert.ok(!column.leads)
+    for (const [kind, script] of [["run", null], ["play", null], ["task", null]] as const) {
+        hear({ lesson: kind, sections, steps: steps(kind, script) })
+        assert.ok(!column.leads, kind)
+    }
+    hear({ lesson: "" })
+    assert.ok(!column.leads)
+})

@@ -347,3 +347,28 @@ test("from 0.3 s after the last touch the lab's value counts, and a row says if 
     pass(6000)
     assert.ok(!row("speed").classList.contains("differs"))
 })
+
+test("a number beyond its limit is marked as unstable, and a line that warns as a warning", () => {
+    const alpha: FormField = { name: "alpha", kind: "number", label: "α", symbol: "α", low: -1, high: 1, step: 0.01, limit: "critical" }
+    const data: FormMessage = { is: "form", place: "lab", groups: [{ name: "a", title: "A", fields: [alpha, { name: "note", kind: "note", label: "" }] }] }
+    const { form, values, row } = opened(data)
+    Object.assign(values, { alpha: 0.5, note: "stable" })
+    form.update()
+    const track = row("alpha").querySelector<HTMLElement>(".track")!
+    assert.ok(!track.classList.contains("limited")) // it is not known yet
+    assert.equal(row("alpha").querySelector(".name")!.textContent, "α")
+    for (const [critical, place] of [[0.5, 0.75], [-1, 0], [7, 1]] as const) {
+        values["critical"] = critical
+        form.update()
+        assert.ok(track.classList.contains("limited"))
+        assert.equal(Number(track.style.getPropertyValue("--limit")), place)
+    }
+    assert.equal(row("note").querySelector(".warning"), null)
+    values["note"] = "a line\n⚠ unstable"
+    form.update()
+    assert.equal(row("note").querySelector(".warning")!.textContent.trim(), "⚠ unstable")
+    assert.equal(row("note").textContent, "a line\n⚠ unstable")
+    values["note"] = ""
+    form.update()
+    assert.ok(row("note").hidden)
+})
