@@ -5,7 +5,7 @@ from __future__ import annotations
 import gzip
 import math
 from base64 import b64encode
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
@@ -199,8 +199,10 @@ def _critical(figure: FigureChoice) -> list[float]:
     return [min(link.critical_alpha(own, joints) for joints in poses) for poses in rest]
 
 
-def _limits(figure: FigureChoice, critical: Iterable[float], words: Words) -> list[dict[str, Any]]:
+def _limits(figure: FigureChoice, critical: Sequence[float], words: Words) -> list[dict[str, Any]]:
     """For each path the critical α, and what is said below it and beyond it."""
+    if not critical:
+        return []
     values = value_of(figure.parameters, "modes"), value_of(figure.parameters, "zeta")
     return [
         {
