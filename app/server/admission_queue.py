@@ -16,17 +16,19 @@ from onpath.app.viser_adapter.connection_limits import PerAddress
 RESERVED = 16  # one place in 16 is reserved for other addresses
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Waiting:
     """A page that waits.
 
     Attributes:
-        address: see `AdmissionQueue.admit`.
-        enter: gives it its lab.
+        address, enter, wait: see `AdmissionQueue.admit`.
+        before: how many have waited longer, as it knows.
     """
 
     address: str
     enter: Callable[[], None]
+    wait: Callable[[str, int, int], None]
+    before: int = -1
 
 
 class AdmissionQueue:
@@ -51,7 +53,7 @@ class AdmissionQueue:
         number: int,
         *,
         enter: Callable[[], None],
-        wait: Callable[[str, int], None],
+        wait: Callable[[str, int, int], None],
         address: str,
         always: bool,
     ) -> None:
@@ -59,15 +61,15 @@ class AdmissionQueue:
 
         Args:
             enter: gives it its lab; called at most once, in any thread.
-            wait: called if it must wait, with the key of the message that says why, and the number
-                of places.
+            wait: called if it must wait, and whenever fewer have waited longer: with the key of the
+                message that says why, the number of places, and of those who have waited longer.
             address: the page's, as the limits on connections count it.
             always: whether to admit it even if there is no place.
         """
         with self._lock:
             if not always and not self._inside.has_room(address):
-                self._waiting[number] = Waiting(address, enter)
-                wait(*self._reason())
+                self._waiting[number] = Waiting(address, enter, wait)
+                self._tell()
                 return
             self._inside.add(number, address)
         enter()
@@ -78,11 +80,19 @@ class AdmissionQueue:
             self._waiting.pop(number, None)
             self._inside.discard(number)
             first = self._first()
-            if first is None:
-                return
-            waiting = self._waiting.pop(first)
-            self._inside.add(first, waiting.address)
-        waiting.enter()
+            waiting = None if first is None else self._waiting.pop(first)
+            if first is not None and waiting is not None:
+                self._inside.add(first, waiting.address)
+            self._tell()
+        if waiting is not None:
+            waiting.enter()
+
+    def _tell(self) -> None:
+        """Tell those who wait how many have waited longer, if they do not know."""
+        for before, waiting in enumerate(self._waiting.values()):
+            if waiting.before != before:
+                waiting.before = before
+                waiting.wait(*self._reason(), before)
 
     def _first(self) -> int | None:
         """Which of the waiting pages may enter now, if any."""

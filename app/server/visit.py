@@ -126,9 +126,11 @@ class Visit:
         self._kept[key] = value
         self._tell(key, Store(key, value))
 
-    def wait(self, key: str, places: int) -> None:
-        """Tell the page that the lab is full. Thread-safe."""
-        self._tell("wait", Wait(Words(self.language)(key, places=places)))
+    def wait(self, key: str, places: int, before: int) -> None:
+        """Tell the page that the lab is full, and how many have waited longer. Thread-safe."""
+        words = Words(self.language)
+        texts = words(key, places=places), words("full.before", count=before)
+        self._tell("wait", Wait(" ".join(texts)))
 
     def renew(self) -> None:
         """Tell a page that has connected again what it may have missed. On the event loop."""

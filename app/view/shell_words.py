@@ -53,6 +53,7 @@ FILLED = {
     "compare.computing": ("done", "all"),
     "compare.count": ("most",),
     "class.of": ("code",),
+    "design.followed": ("file",),
     "class.member": ("name",),
     "class.too_long": ("most",),
 }

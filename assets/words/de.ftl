@@ -223,6 +223,12 @@ full-text =
        *[other] Alle { $places } Plätze sind besetzt.
     } Lass diese Seite offen: Sie geht von selbst weiter, sobald einer frei ist.
 full-network = Alle { $places } Plätze für ein Netz sind besetzt; die übrigen werden für andere Netze freigehalten. Lass diese Seite offen: Sie geht von selbst weiter, sobald einer frei ist.
+full-before =
+    { $count ->
+        [0] Niemand wartet länger.
+        [one] Eine Seite wartet länger.
+       *[other] { $count } Seiten warten länger.
+    }
 
 test-title_before = Vor dem Kurs: { $title }
 test-title_after = Nach dem Kurs: { $title }
@@ -646,6 +652,7 @@ design-open_hint = Das Ende wird nicht mit dem Anfang verbunden; sonst wie in de
 design-upload = Datei wählen
 design-upload_hint = Punkte (CSV), eine Zeichnung (SVG) oder G-Code, höchstens { $most } MB. Von mehreren Linien wird die längste genommen.
 design-reading = Die Datei wird gelesen.
+design-followed = Die Roboter folgen { $file }. Änderungen von Größe, Ecken und Ende wirken sofort darauf, bis du dies schließt.
 design-edit = Ändern
 design-undo = Rückgängig
 design-redo = Wiederholen

@@ -225,6 +225,12 @@ full-text =
        *[other] All { $places } places are taken.
     } Leave this page open: it continues by itself as soon as one is free.
 full-network = All { $places } places for one network are taken; the rest is kept for other networks. Leave this page open: it continues by itself as soon as one is free.
+full-before =
+    { $count ->
+        [0] Nobody has waited longer.
+        [one] One page has waited longer.
+       *[other] { $count } pages have waited longer.
+    }
 
 test-title_before = Before the course: { $title }
 test-title_after = After the course: { $title }
@@ -561,6 +567,7 @@ design-open_hint = The end is not joined to the beginning; otherwise as the file
 design-upload = Choose a file
 design-upload_hint = Points (CSV), a drawing (SVG) or G-code, at most { $most } MB. Of several lines, the longest is taken.
 design-reading = The file is being read.
+design-followed = The robots follow { $file }. Changes of size, corners and end act on it at once, until you close this.
 design-edit = Edit
 design-undo = Undo
 design-redo = Redo

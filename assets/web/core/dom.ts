@@ -33,6 +33,13 @@ export function tell(element: HTMLElement, text: string): void {
     if (element.textContent !== text) element.textContent = text
 }
 
+/** Say why something was refused, and bring it into sight; an empty text: it was not. */
+export function refuse(element: HTMLElement, why: string): void {
+    if (element.textContent === why) return
+    element.textContent = why
+    if (why) element.scrollIntoView({ block: "nearest" })
+}
+
 /** Let the browser save a file. */
 export function save(name: string, content: Blob): void {
     const link = made("a", "")

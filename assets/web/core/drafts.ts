@@ -20,6 +20,14 @@ export function keepDraft(name: string, draft: object | null): void {
     remember(entryOf(name), draft, "sessionStorage")
 }
 
+/** Begin where an element was scrolled to, also by a page before this one, and keep where it is from now on.
+ * @param of what it shows: elsewhere it begins at the top */
+export function keepScroll(element: HTMLElement, name: string, of = ""): void {
+    const draft = draftOf<{ of: string; top: number }>(name)
+    element.scrollTop = draft?.of === of ? Number(draft.top) || 0 : 0
+    element.addEventListener("scroll", () => keepDraft(name, { of, top: element.scrollTop }), { passive: true })
+}
+
 function entryOf(name: string): string {
     return `onpath-draft ${owner} ${name}`
 }

@@ -134,7 +134,7 @@ class Face {
         const lab = forms.get("lab"), step = forms.get("step")
         if (lab && !shell.form) {
             shell.form = lab
-            shell.panel.body.append(lab.element)
+            shell.panel.fill(lab.element)
         }
         if (!step) return
         if (!engine.forms.get("step")!.groups.length) step.element.remove()

@@ -19,7 +19,7 @@ import { Panel } from "../parts/panel"
 import { pointAtStage } from "../parts/pointing"
 import { chooseRobot } from "../parts/robot_sheet"
 import { Search, type Entry } from "../parts/search"
-import type { SheetDialog } from "../parts/sheet"
+import { isSheetOpen, type SheetDialog } from "../parts/sheet"
 
 /** What can be opened, with the title under which the search finds it. */
 const TITLES = {
@@ -45,6 +45,7 @@ export class Shell {
     private compare: LawComparison | null = null
     private seat: ClassSheet | null = null
     private place = "" // the lab's in the class, as it was told last
+    private dropped: File | undefined // for the sheet that is opened next
     private leaves = false // whether it leaves the class by itself
 
     /** `reopen`: what was open before the page got its present words. */
@@ -58,6 +59,8 @@ export class Shell {
             else if (change === "class") this.sit()
         }, signal)
         engine.onNews(news => this.hear(news), signal)
+        addEventListener("dragover", event => hasFile(event) && event.preventDefault(), { signal }) // or it takes the page's place
+        addEventListener("drop", event => this.drop(event), { signal })
         this.follow()
         this.sit()
         if (reopen in TITLES && !this.opened) void this.open(reopen as Opens)
@@ -87,7 +90,7 @@ export class Shell {
                 teach: this.isClassroom ? () => void this.open("teach") : null,
             }),
             keep: async () => (this.keep = new Keep(texts, await engine.ask("keep"), send, () => (this.keep = null))).open(),
-            file: () => Promise.resolve(pathFromFile(texts, engine.files)),
+            file: () => Promise.resolve(pathFromFile(texts, engine.files, this.dropped)),
             compare: async () => {
                 const data = await engine.ask("compare")
                 return (this.compare ??= new LawComparison(texts, { send, get laws() { return engine.lab!.laws } })).open(data)
@@ -97,6 +100,17 @@ export class Shell {
         }
         this.opened?.dialog.close()
         this.opened = { name, dialog: await opens[name]() }
+    }
+
+    /** A file that is dropped on the page is a path. */
+    private drop(event: DragEvent): void {
+        if (!hasFile(event) || event.defaultPrevented) return
+        event.preventDefault()
+        const { own, frozen } = this.engine.lab!
+        if (!own || frozen || isSheetOpen()) return
+        this.dropped = event.dataTransfer!.files[0]
+        void this.open("file")
+        this.dropped = undefined
     }
 
     /** Go to what a button names. */
@@ -179,4 +193,8 @@ export class Shell {
         }))
         return [...settings, ...sheets, ...found]
     }
+}
+
+function hasFile({ dataTransfer }: DragEvent): boolean {
+    return dataTransfer?.types.includes("Files") ?? false
 }

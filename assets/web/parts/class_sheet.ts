@@ -2,7 +2,7 @@
 // teacher's page.
 
 import type { ClassMessage, PageMessage, SeatAnswer } from "../channel/messages"
-import { made, tell } from "../core/dom"
+import { made, refuse, tell } from "../core/dom"
 import { draftOf, keepDraft } from "../core/drafts"
 import { said, type Texts } from "../core/words"
 import { pressed, SheetDialog } from "./sheet"
@@ -57,7 +57,7 @@ export class ClassSheet {
     hear({ why, address }: SeatAnswer): void {
         const { texts, field, acts, refusal } = this
         if (acts) acts.disabled = false
-        tell(refusal, why)
+        refuse(refusal, why)
         if (field) field.ariaInvalid = why ? "true" : null
         if (why) field?.focus()
         if (!address) return
@@ -121,7 +121,7 @@ export class ClassSheet {
             if (button.disabled) return
             const why = use(field.value.trim()) ?? ""
             button.disabled = !why
-            tell(refusal, why)
+            refuse(refusal, why)
         })
         return form
     }

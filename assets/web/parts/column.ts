@@ -2,6 +2,7 @@
 
 import type { Action, Command, LessonMessage, MeasuredMessage, PageMessage } from "../channel/messages"
 import { isTyped, made } from "../core/dom"
+import { keepScroll } from "../core/drafts"
 import type { Answer, BlockData, PageData, TaskData } from "../core/lesson_data"
 import { said, type Texts } from "../core/words"
 import type { Verdict } from "../lessons/checks"
@@ -224,7 +225,7 @@ export class Column implements Robots {
         if (view) this.legend.add(section)
         this.follow()
         view?.place()
-        words.scrollTo(0, 0)
+        keepScroll(words, "read", this.place)
         if (reads) words.focus({ preventScroll: true }) // whoever turns the page reads on
         this.turned = false
     }

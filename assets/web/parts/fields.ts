@@ -1,6 +1,6 @@
 // The rows of a form: a setting each, or a button, or a note. While a hand is on a row, it shows what the hand wants.
 
-import { made, svg, switchInput, tell } from "../core/dom"
+import { made, refuse, svg, switchInput, tell } from "../core/dom"
 import { draftOf, keepDraft } from "../core/drafts"
 import type { FormField, FormOption } from "../core/form_data"
 import { Scale, typedNumber } from "../core/scales"
@@ -111,7 +111,7 @@ export abstract class FieldRow {
         const differs = !refused && this.wanted !== null && !this.holds
         if (differs) this.telling ??= setTimeout(() => this.forget(), TOLD)
         this.element.classList.toggle("differs", differs)
-        tell(this.refusal, differs ? said(host.texts, "form.differs", { value: this.words(wanted!) }) : refused)
+        refuse(this.refusal, differs ? said(host.texts, "form.differs", { value: this.words(wanted!) }) : refused)
         for (const input of this.inputs) {
             if (refused) input.setAttribute("aria-describedby", this.refusal.id)
             else input.removeAttribute("aria-describedby")

@@ -1,14 +1,15 @@
-// A path from a file: what is made of its line, how far it has come, and why it cannot be followed.
+// A path from a file: what is made of its line, how far it has come, and why it cannot be followed. What is set acts on the
+// file that was chosen until the sheet is closed.
 
 import type { Files } from "../channel/files"
-import { made, switchInput, tell } from "../core/dom"
+import { made, refuse, switchInput, tell } from "../core/dom"
 import { said, type Texts } from "../core/words"
 import { pressed, SheetDialog } from "./sheet"
 
 const KINDS = ".csv,.txt,.tsv,.svg,.gcode,.nc,.ngc"
 
-/** A sheet that takes a file; it closes once the robots follow its path. */
-export function pathFromFile(texts: Texts, files: Files): SheetDialog {
+/** A sheet that takes a file, or has been given one. */
+export function pathFromFile(texts: Texts, files: Files, dropped?: File): SheetDialog {
     const given = new AbortController()
     const sheet = new SheetDialog(texts, "file", said(texts, "design.files"), () => given.abort())
     const number = (key: string, value: number, max: number, step: number) => {
@@ -25,34 +26,48 @@ export function pathFromFile(texts: Texts, files: Files): SheetDialog {
     state.role = "status"
     refusal.role = "alert"
 
-    const take = async (file: File) => {
-        tell(refusal, "")
-        tell(state, said(texts, "design.reading"))
-        choose.disabled = true
-        bar.hidden = false
+    let file: File | null = null, isBusy = false, isStale = false
+    const use = () => {
         const limit = (box: HTMLInputElement) => Math.min(Math.max(box.valueAsNumber || 0, 0), Number(box.max))
-        const use = { kind: "path", size: limit(size.box), radius: limit(radius.box), opened: opened.checked } as const
-        const why = await files.send(file, use, share => (bar.value = share), given.signal)
-        choose.disabled = false
+        return { kind: "path", size: limit(size.box), radius: limit(radius.box), opened: opened.checked } as const
+    }
+    const follow = async () => {
+        isStale = true
+        if (!file || isBusy) return
+        isBusy = choose.disabled = true
+        bar.hidden = false
+        refuse(refusal, "")
+        tell(state, said(texts, "design.reading"))
+        let why = ""
+        while (isStale && !given.signal.aborted) {
+            isStale = false
+            why = await files.send(file, use(), share => (bar.value = share), given.signal)
+        }
+        isBusy = choose.disabled = false
         bar.hidden = true
-        tell(state, "")
-        tell(refusal, why)
-        if (why) choose.focus()
-        else sheet.close()
+        tell(state, why ? "" : said(texts, "design.followed", { file: file.name }))
+        refuse(refusal, why)
+        sheet.element.classList.toggle("followed", !why)
+        if (document.activeElement === document.body) choose.focus() // it was not to be pressed meanwhile
+    }
+    const take = (chosen: File | undefined) => {
+        if (!chosen || isBusy) return
+        file = chosen
+        void follow()
     }
     chooser.addEventListener("change", () => {
-        const file = chooser.files?.[0]
+        take(chooser.files?.[0])
         chooser.value = "" // the same file may be chosen again
-        if (file) void take(file)
     })
+    for (const input of [size.box, radius.box, opened]) input.addEventListener("change", () => void follow())
     sheet.element.addEventListener("dragover", event => event.preventDefault())
     sheet.element.addEventListener("drop", event => {
         event.preventDefault()
-        const file = event.dataTransfer?.files[0]
-        if (file && !choose.disabled) void take(file)
+        take(event.dataTransfer?.files[0])
     })
     const open = made("label", "row", made("span", "", said(texts, "design.open")), opened)
     sheet.body.append(made("p", "note", said(texts, "design.upload_hint")), size.label, radius.label, open, made("div", "row", choose, chooser, bar), state, refusal)
     sheet.open(choose)
+    take(dropped)
     return sheet
 }

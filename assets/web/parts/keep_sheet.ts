@@ -1,7 +1,7 @@
 // Keep, share and export: the lab's code, a code of its set-up, files of the last minute, and the record of the lessons.
 
 import type { Command, KeepSheet, MakeFile, PageMessage } from "../channel/messages"
-import { made, switchInput, tell } from "../core/dom"
+import { made, refuse, switchInput, tell } from "../core/dom"
 import { said, type Texts } from "../core/words"
 import { pressed, SheetDialog } from "./sheet"
 
@@ -50,7 +50,7 @@ export class Keep {
     }
 
     /** Say how it stands with a file, or why a code was refused. */
-    tell(text: string): void { tell(this.refusal, text) }
+    tell(text: string): void { refuse(this.refusal, text) }
 
     /** A button for a file, of whose making the page tells then. */
     private file(file: MakeFile["file"], withCode = () => false): HTMLElement {

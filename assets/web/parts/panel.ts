@@ -2,6 +2,7 @@
 // a telephone a sheet that one pulls up from below, to half the height of the window or to all of it.
 
 import { made, tell } from "../core/dom"
+import { keepScroll } from "../core/drafts"
 import { said, type Texts } from "../core/words"
 import { icon } from "./icons"
 import { pressed } from "./sheet"
@@ -29,6 +30,12 @@ export class Panel {
             if (event.key === "Escape" && this.isOpen && !event.defaultPrevented) this.show(false)
         }, { signal })
         this.pull(signal)
+    }
+
+    /** Show the controls, as far down as they were. */
+    fill(controls: HTMLElement): void {
+        this.body.append(controls)
+        keepScroll(this.body, "panel")
     }
 
     /** Whether it is open as a drawer; as a column it is always in sight. */

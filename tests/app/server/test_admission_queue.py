@@ -11,8 +11,8 @@ from onpath.app.server.admission_queue import RESERVED, AdmissionQueue
 PLACES = 32
 
 
-class Notices(dict[int, tuple[str, int]]):
-    """Why pages wait, and for how many places, by number."""
+class Notices(dict[int, tuple[str, int, int]]):
+    """Why pages wait, for how many places, and how many have waited longer, by number."""
 
     def come(self, queue: AdmissionQueue, number: int, address: str, inside: list[int]) -> None:
         """A page that is let in, or waits."""
@@ -21,8 +21,8 @@ class Notices(dict[int, tuple[str, int]]):
             self.pop(number, None)
             inside.append(number)
 
-        def wait(key: str, places: int) -> None:
-            self[number] = key, places
+        def wait(key: str, places: int, before: int) -> None:
+            self[number] = key, places, before
 
         queue.admit(number, enter=enter, wait=wait, address=address, always=False)
 
@@ -37,7 +37,11 @@ def test_one_address_leaves_places_for_others(notices: Notices) -> None:
     for number in range(2 * PLACES):
         notices.come(queue, number, "203.0.113.1", inside)
     assert len(inside) == PLACES - PLACES // RESERVED
-    assert notices[2 * PLACES - 1] == ("full.network", PLACES - PLACES // RESERVED)
+    assert notices[2 * PLACES - 1] == (
+        "full.network",
+        PLACES - PLACES // RESERVED,
+        PLACES + PLACES // RESERVED - 1,
+    )
     notices.come(queue, 1000, "198.51.100.1", inside)
     assert inside[-1] == 1000
 
@@ -47,7 +51,7 @@ def test_a_free_place_goes_to_the_address_that_has_fewest(notices: Notices) -> N
     for number in range(4):  # 2 and 3 wait
         notices.come(queue, number, "203.0.113.1", inside)
     notices.come(queue, 4, "198.51.100.1", inside)
-    assert inside == [0, 1] and notices[4] == ("full.text", 2)
+    assert inside == [0, 1] and notices[4] == ("full.text", 2, 2)
     queue.leave(0)
     assert inside == [0, 1, 4] and set(notices) == {2, 3}
     queue.leave(1)
@@ -65,3 +69,5 @@ def test_nobody_waits_while_a_place_is_free(steps: list[tuple[int, str, bool]]) 
             queue.leave(100 + number)
         count = len(queue._inside)
         assert count <= 3 and not (queue._waiting and count < 3)
+        waiting = [waits for waits in notices if waits in queue._waiting]
+        assert [notices[waits][2] for waits in waiting] == list(range(len(waiting)))

@@ -19,7 +19,7 @@ function opened(): { sent: PageMessage[]; files: Files; body: HTMLElement; chose
 const settled = () => new Promise(done => setTimeout(done))
 const sheet = () => document.querySelector("dialog[open]")
 
-test("what is set goes with the file, within its bounds; once it is followed the sheet closes", async () => {
+test("what is set goes with the file, within its bounds", async () => {
     const { sent, files, body, chosen } = opened()
     const [size, radius] = [...body.querySelectorAll<HTMLInputElement>("input[type=number]")]
     assert.equal(size!.valueAsNumber, 100)
@@ -33,7 +33,46 @@ test("what is set goes with the file, within its bounds; once it is followed the
     assert.equal(body.querySelector("[role=status]")!.textContent, "design.reading")
     files.hear({ is: "file", number, state: "used", received: 3, why: "" })
     await settled()
-    assert.equal(sheet(), null)
+    assert.equal(body.querySelector("[role=status]")!.textContent, "design.followed")
+    sheet()!.remove()
+})
+
+test("once a file is followed, what is set acts on it until the sheet is closed; the last value counts", async () => {
+    const { sent, files, body, chosen } = opened()
+    const radius = body.querySelectorAll<HTMLInputElement>("input[type=number]")[1]!
+    const set = (value: number) => {
+        radius.valueAsNumber = value
+        radius.dispatchEvent(new Event("change"))
+    }
+    const used = async () => {
+        const { number } = begun().at(-1)!
+        files.hear({ is: "file", number, state: "used", received: 3, why: "" })
+        await settled()
+    }
+    const begun = () => sent.filter((each): each is SendFile => each.is === "send")
+    const radii = () => begun().map(({ use }) => use.radius)
+    set(3) // there is no file yet
+    assert.deepEqual(radii(), [])
+    chosen(new File(["x,y"], "a.csv"))
+    for (const value of [5, 7, 8]) set(value)
+    assert.deepEqual(radii(), [3])
+    await used()
+    assert.deepEqual(radii(), [3, 8])
+    await used()
+    set(9)
+    assert.deepEqual(radii(), [3, 8, 9])
+    ;(body.closest("dialog") as HTMLDialogElement).close()
+    await settled()
+    set(10)
+    await settled()
+    assert.deepEqual(radii(), [3, 8, 9])
+})
+
+test("a file that was dropped on the page is taken at once", () => {
+    const sent: PageMessage[] = []
+    const { element } = pathFromFile(TEXTS, new Files(message => sent.push(message)), new File(["x,y"], "star.svg"))
+    assert.equal((sent[0] as SendFile).name, "star.svg")
+    element.remove()
 })
 
 test("a refusal is a sentence beside the button, and is no markup", async () => {
