@@ -34,23 +34,26 @@ def test_who_opens_the_address_types_a_nickname_only(browser: Browser, server: L
     context = browser.new_context(viewport={"width": 1280, "height": 800})
     tab = Tab(server, context, draws=False, path=f"/c/{first.code.upper()}")
     assert tab.page.url.partition("?")[0] == f"{server.address}/c/{first.code}/"
-    assert tab.field("Class code").count() == 0
-    tab.field("Nickname").fill("Ada")
-    tab.blur()
-    tab.press("Join the class")
-    tab.page.get_by_text("You are in the class as").wait_for()
+    card = tab.page.get_by_role("dialog")
+    card.wait_for()  # by itself
+    assert card.get_by_label("Class code").count() == 0
+    card.get_by_label("Nickname").fill("Ada")
+    card.get_by_role("button", name="Join the class").click()
+    tab.page.get_by_role("button", name=re.compile("^Ada · class ")).wait_for()
     assert [member.name for member in first.members().values()] == ["Ada"]
     lab = tab.lab
     tab.reload()
     assert tab.lab is lab  # a reload comes back to it
-    tab.page.get_by_text("You are in the class as").wait_for(state="attached")  # in a closed folder
+    tab.page.get_by_role("button", name=re.compile("^Ada · class ")).wait_for()
     other = Tab(server, context, draws=False)  # the same browser, in no class
-    assert other.lab is not lab and other.field("Nickname").count() == 0
-    other.field("Class code").fill(second.code)
-    other.blur()
-    other.press("Join the class")
+    assert other.lab is not lab
+    other.button("Join the class").click()
+    card = other.page.get_by_role("dialog")
+    assert card.get_by_label("Nickname").count() == 0
+    card.get_by_label("Class code").fill(second.code)
+    card.get_by_role("button", name="Join the class").click()
     other.page.get_by_role("link", name="Open the page of this class").click()
     other.page.wait_for_url(re.compile(f"/c/{second.code}/$"))
-    other.page.get_by_role("button", name="Join the class").wait_for()
+    other.page.get_by_role("dialog").get_by_label("Nickname").wait_for()
     assert not second.members() and tab.errors == other.errors == []
     context.close()

@@ -24,9 +24,10 @@ from onpath.app.server.lab_server import LabServer
 from onpath.app.server.server_options import ServerOptions
 from onpath.app.viser_adapter.addresses import class_address
 from tests.support.axe import violations
-from tests.support.browser import THREE_FRAMES, Tab, wait_for
+from tests.support.browser import THREE_FRAMES, WAIT, Tab, wait_for
 
 pytestmark = pytest.mark.thorough
+expect.set_options(timeout=WAIT * 1e3)
 
 LESSON = "01-path-or-timetable"
 SIZES = {"desk": (1280, 800), "telephone": (390, 844)}
@@ -138,9 +139,7 @@ def test_a_dark_teachers_page_can_be_read(browser: Browser) -> None:
     room = Classroom()
     server = LabServer("127.0.0.1", 0, LoopCache(), ServerOptions(classrooms=[room]))
     tab = visit(browser, server, path=class_address(room.code))
-    tab.open("Teacher…")
-    tab.field("Teacher's key").fill(shown(room.key))
-    tab.press("Open the teacher's page")
+    tab.teach(shown(room.key))
     tab.page.get_by_text(room.code.upper()).or_(tab.page.get_by_text(room.code)).first.wait_for()
     wait_for(tab.is_built)
     assert violations(tab) == []

@@ -10,12 +10,9 @@ pytest.importorskip("playwright")
 
 from playwright.sync_api import Browser, ConsoleMessage, expect
 
-from onpath.app.classroom.classroom import Classroom
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
-from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
-from onpath.app.server.server_options import ServerOptions
 from onpath.models.control.sides import SIDES
 from tests.support.browser import WAIT, Tab, wait_for
 
@@ -122,15 +119,3 @@ def test_no_gap_is_left_for_the_hidden_buttons_on_a_telephone(
     }"""
     wait_for(lambda: all(0 <= gap < 16 for gap in tab.page.evaluate(gaps)))
     context.close()
-
-
-def test_a_teachers_key_is_not_shown_while_it_is_typed(browser: Browser) -> None:
-    server = LabServer("127.0.0.1", 0, LoopCache(), ServerOptions(classrooms=[Classroom()]))
-    context = browser.new_context(viewport={"width": 1280, "height": 800})
-    tab = Tab(server, context, draws=False)
-    tab.open("Teacher…")
-    shown = "box => getComputedStyle(box).webkitTextSecurity"
-    assert tab.field("Teacher's key").evaluate(shown) == "disc"
-    assert tab.field("Class code").evaluate(shown) == "none"
-    context.close()
-    server.stop()

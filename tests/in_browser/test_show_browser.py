@@ -56,7 +56,7 @@ def share_of_scale(tab: Tab) -> float:
 
 
 def test_each_switch_draws_and_removes(tab: Tab) -> None:
-    page = tab.page
+    controls = tab.page.locator("#op-panel")
     tab.open("View")
     for name in (
         "Labels, axes",
@@ -68,15 +68,15 @@ def test_each_switch_draws_and_removes(tab: Tab) -> None:
     assert drawn(tab) == set() and share_of_scale(tab) < 0.01
 
     switch(tab, "Where the laws are defined")
-    page.get_by_text("in (m/s²)/(N m)").wait_for()
+    controls.get_by_text("in (m/s²)/(N m)").wait_for()
     wait_for(lambda: share_of_scale(tab) > 0.05)
     switch(tab, "Tube")
-    page.get_by_text("unique up to 50.0 mm").wait_for()
+    controls.get_by_text("unique up to 50.0 mm").wait_for()
     tab.ask(c.SetRunning(True), c.ChoosePath("ellipse"))
-    page.get_by_text("unique up to 17.5 mm").wait_for()
+    controls.get_by_text("unique up to 17.5 mm").wait_for()
     tab.ask(c.SetRunning(False))
     switch(tab, "Grid along and across the path")
-    page.get_by_text("every 5 mm of ξ").wait_for()
+    controls.get_by_text("every 5 mm of ξ").wait_for()
     switch(tab, "Labels, axes")
     wait_for(lambda: drawn(tab) == set(NODES))
 

@@ -71,18 +71,18 @@ def test_a_wall_is_placed_moved_turned_and_taken_away(tab: Tab) -> None:
         keyboard.press(key)
         wait_for(lambda before=before: simulation.wall is not before)
         assert wall_of(tab).angle - before.angle == pytest.approx(turn)
-    tab.enter("Wall y2", "35")
+    tab.enter("Wall: up", "35")
     wait_for(lambda: wall_of(tab).z2 == pytest.approx(0.035))
-    tab.switch("A wall in the way").uncheck()
+    tab.switch("Wall").uncheck()
     wait_for(lambda: simulation.wall is None)
-    expect(tab.page.get_by_role("slider", name="Wall y2")).to_have_count(0)
+    expect(tab.page.get_by_role("slider", name="Wall: up")).to_have_count(0)
 
 
 def test_the_force_on_the_wall_is_shown(tab: Tab) -> None:
-    tab.switch("A wall in the way").check()
+    tab.switch("Wall").check()
     wait_for(lambda: tab.simulation.wall is not None)
     tab.elapse(3.0)
-    shown = tab.page.get_by_role("note").filter(has_text="Force on the wall")
+    shown = tab.row("Wall").locator("xpath=ancestor::*[@role='group']")
     expect(shown).to_contain_text("Path following: 1.0 N")
 
 
@@ -99,16 +99,16 @@ def test_a_start_is_dragged_and_typed_and_taken_at_reset(tab: Tab) -> None:
             lambda: np.linalg.norm(simulation.start.place(simulation.editor.curve) - goal) < NEAR
         )
     assert not simulation.forces.hands and simulation.editor.design.name == "circle"
-    expect(tab.number("Beside the path")).not_to_have_value("0")
-    tab.enter("Speed along", "150")
+    expect(tab.number("Start: beside the path")).not_to_have_value("0")
+    tab.enter("Start: speed along", "150")
     wait_for(lambda: simulation.start.along == pytest.approx(0.15))
-    tab.enter("Clock ahead", "20")
+    tab.enter("Start: lead of the clock", "20")
     wait_for(lambda: simulation.start.clock_offset == pytest.approx(math.radians(20)))
     before, run = simulation.start, simulation.run_number
-    tab.enter("Beside the path", "-190")
+    tab.enter("Start: beside the path", "-190")
     wait_for(lambda: "cannot start there" in tab.lab.message)
     assert simulation.start == before
-    expect(tab.number("Beside the path")).not_to_have_value("-190")
+    expect(tab.number("Start: beside the path")).not_to_have_value("-190")
     tab.press("Reset to it")
     wait_for(lambda: simulation.run_number > run)
     tab.ask()  # until it is at the start

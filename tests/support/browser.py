@@ -428,6 +428,14 @@ class Tab:
         box.press("Enter")
         self.blur()
 
+    def teach(self, key: str) -> None:
+        """Ask for the teacher's page with a key."""
+        self.button("Language, display").click()
+        dialog = self.page.get_by_role("dialog")
+        dialog.get_by_role("button", name="Teacher…").click()
+        dialog.get_by_label("Teacher's key").fill(key)
+        dialog.get_by_role("button", name="Open the teacher's page").click()
+
     def wait_for_no_message(self) -> None:
         """Return when the page shows no message; a failure tells page and lab apart."""
         wait_for(

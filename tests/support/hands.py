@@ -69,11 +69,12 @@ class Hands:
         wait_for(lambda: self.lab.asked > asked)
 
     def has(self, label: str, value: float, near: float = 0.0) -> bool:
-        """Whether the lab's parameter with a label is near a value."""
+        """Whether the lab's parameter with a label is near a value, in the unit that is shown."""
         own = self.simulation.parameters
         known = {parameter_label(name, spec, ENGLISH): name for name, spec in specs(own).items()}
         name = known[min((full for full in known if full.startswith(label)), key=len)]
-        return abs(value_of(own, name) - value) <= near + 1e-9
+        _, factor = specs(own)[name].shown_in or ("", 1.0)
+        return abs(value_of(own, name) * factor - value) <= near + 1e-9
 
     def is_near(self, output: np.ndarray, z: np.ndarray) -> bool:
         """Whether an output is near a point of the path's plane, shape (2,), [m]."""

@@ -33,7 +33,7 @@ SOLUTIONS: dict[str, dict[str, tuple[Gesture, ...]]] = {
     "02-what-is-the-error": {
         "half-a-round-late": (RESET, Wait(1), HOLD, Wait(1.9), LET_GO, Wait(2)),
         "the-other-side": (Pull(-70, 0, seconds=1), Wait(2)),
-        "deeper-than-deep": (Enter("Target", 1.57), Wait(2), Key("s", 12), Wait(0.5), Key("x")),
+        "deeper-than-deep": (Enter("Target", 90), Wait(2), Key("s", 12), Wait(0.5), Key("x")),
     },
     "03-the-five-bar": {
         "dear": (DragBall((35, 35), (67, 67)), Wait(3)),
@@ -57,7 +57,7 @@ SOLUTIONS: dict[str, dict[str, tuple[Gesture, ...]]] = {
     "05-invariance": {
         "tour": (
             *(RESET, Enter("K4", 100), Enter("K5", 20)),
-            *(Slide("Target", 3.1), Wait(2), Slide("Target", 0), Wait(2)),
+            *(Slide("Target", 178, near=3), Wait(2), Slide("Target", 0, near=3), Wait(2)),
         ),
         "obstruction": (
             *(Press("run round the circle"), Enter("K1", 2000), Enter("K2", 90), RESET),
