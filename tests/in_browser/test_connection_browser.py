@@ -404,41 +404,31 @@ def becomes_whole(
     assert visit.wrong == []
 
 
-@pytest.mark.parametrize(
-    ("delay", "fault"),
-    [
+def test_a_page_becomes_whole_by_itself(browser: Browser, told: Told) -> None:
+    for delay, fault in (
         (LONGEST, None),
         (0.01, Fault("restart", 5.0, lasts=15.0)),
         (0.01, Fault("silently", 5.0)),
-        (0.5, Fault("mute", 1.0)),
+        (0.5, Fault("mute", 1.0)),  # before it is there
         (0.01, Fault("data", 5.0, 1008)),
-    ],
-    ids=["late", "restarted", "dead", "dead before it is there", "closed"],
-)
-def test_a_page_becomes_whole_by_itself(
-    browser: Browser, told: Told, delay: float, fault: Fault | None
-) -> None:
-    becomes_whole(browser, told, [delay], [fault] if fault else [])
+    ):
+        becomes_whole(browser, told, [delay], [fault] if fault else [])
 
 
 PHONE, LAPTOP, TAB = Away(10.0, 600.0), Away(10.0, 600.0, hidden=False), Away(10.0, 60.0, 10)
 
 
-@pytest.mark.parametrize(
-    ("away", "fault"),
-    [
+def test_a_page_that_stood_still_for_minutes_soon_becomes_whole(
+    browser: Browser, told: Told
+) -> None:
+    for away, fault in (
         (PHONE, None),
         (PHONE, Fault("mute", 20.0)),
         (LAPTOP, Fault("mute", 20.0)),
         (TAB, Fault("restart", 20.0)),
         (TAB, Fault("viser", 20.0)),
-    ],
-    ids=["phone", "dead phone", "dead laptop", "tab, restarted", "tab, closed"],
-)
-def test_a_page_that_stood_still_for_minutes_soon_becomes_whole(
-    browser: Browser, told: Told, away: Away, fault: Fault | None
-) -> None:
-    becomes_whole(browser, told, [0.01], [fault] if fault else [], away, within=BACK)
+    ):
+        becomes_whole(browser, told, [0.01], [fault] if fault else [], away, within=BACK)
 
 
 @pytest.mark.thorough

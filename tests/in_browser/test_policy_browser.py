@@ -70,33 +70,29 @@ def shown(browser: Browser, folder: Path, policy: str, name: str) -> Iterator[Pa
         page.close()
 
 
-@pytest.mark.parametrize(
-    "policy, name, said, not_said",
-    [
+def test_what_a_server_forbids_is_said(browser: Browser, folder: Path) -> None:
+    for policy, name, said, not_said in (
         (INLINE, "figure.html", NO_WASM, NO_SCRIPT),
         (SELF, "figure.html", NO_SCRIPT, NO_WASM),
         ("default-src 'none'", "index.html", NO_SCRIPT, NO_WASM),
         (SELF, "index.html", NO_WASM, NO_SCRIPT),
         (SELF, f"{LESSON}.html", NO_WASM, NO_SCRIPT),
-    ],
-)
-def test_what_a_server_forbids_is_said(
-    browser: Browser, folder: Path, policy: str, name: str, said: str, not_said: str
-) -> None:
-    with shown(browser, folder, policy, name) as page:
-        wait_for(lambda: page.get_by_text(said).is_visible(), WAIT)
-        assert not page.get_by_text(not_said).is_visible()
+    ):
+        with shown(browser, folder, policy, name) as page:
+            told = page.get_by_text(said)
+            wait_for(lambda told=told: told.is_visible(), WAIT)
+            assert not page.get_by_text(not_said).is_visible()
 
 
-@pytest.mark.parametrize("name", ["figure.html", "index.html", f"{LESSON}.html"])
-def test_a_browser_without_webassembly_says_so(browser: Browser, folder: Path, name: str) -> None:
+def test_a_browser_without_webassembly_says_so(browser: Browser, folder: Path) -> None:
     page = browser.new_page()
     page.add_init_script(WITHOUT)
-    page.goto((folder / name).as_uri())
-    wait_for(lambda: page.get_by_text("needs WebAssembly").is_visible(), WAIT)
-    if name == "figure.html":
-        assert page.get_by_alt_text(PICTURE).is_visible()
-        assert not page.get_by_text(HINT).is_visible()
+    for name in ("figure.html", "index.html", f"{LESSON}.html"):
+        page.goto((folder / name).as_uri())
+        wait_for(lambda: page.get_by_text("needs WebAssembly").is_visible(), WAIT)
+        if name == "figure.html":
+            assert page.get_by_alt_text(PICTURE).is_visible()
+            assert not page.get_by_text(HINT).is_visible()
     page.close()
 
 

@@ -38,9 +38,7 @@ MATERIALS = """() => {
 }"""
 RENDERERS = {
     "ANGLE (NVIDIA, NVIDIA GeForce RTX 3060 Direct3D11 vs_5_0 ps_5_0, D3D11)": False,
-    "Apple GPU": False,
     "llvmpipe (LLVM 15.0.7, 256 bits)": True,
-    "ANGLE (Microsoft, Microsoft Basic Render Driver, D3D11)": True,
 }
 
 
