@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import asyncio
+import json
 import random
 import sys
 import time
@@ -14,17 +15,16 @@ from contextlib import suppress
 from functools import partial
 from itertools import count, cycle, product
 from math import inf
-from typing import Any
+from typing import Any, get_args
 
 from typing_extensions import override
 from websockets.asyncio.client import ClientConnection
 from websockets.exceptions import ConnectionClosed, WebSocketException
 from websockets.frames import Opcode
 
+from onpath.app.channel.sheet_messages import SheetName
 from onpath.app.viser_adapter.data_channel import SUBPROTOCOL as DATA
 from onpath.app.viser_adapter.message_filter import Limits
-from onpath.lessons.labels import robot_label
-from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import ROBOTS
 from tests.bench.client_protocol import CAMERA, SUBPROTOCOL, packed
 from tests.bench.dear_commands import dear_message
@@ -42,7 +42,7 @@ from tests.bench.raw_socket import frames, handshake
 from tests.bench.simulated_browser import Browser, stand_back
 
 SOURCE = "127.0.0.2" if sys.platform == "linux" else "127.0.0.1"
-RATE = 0.9 * Limits().changes_per_second  # of changed widgets or drags; no tab is closed for that
+RATE = 0.9 * Limits().changes_per_second  # of messages or drags; no tab is closed for that
 BYTES = 0.9 * 4000 * Limits().messages_per_second  # per second; see `Limits.message_burst`
 MIXED = 0.75 * Limits().messages_per_second  # of messages, a quarter of which are drags
 TURNED_AWAY = 0.1  # [s] until it comes back
@@ -52,7 +52,8 @@ TOO_LARGE = frames(bytes(1_000_001))
 PATHS = ("ellipse", "clover", "rounded square", "figure of eight", "segment", "circle")
 
 Attack = Callable[[int], Coroutine[Any, Any, None]]
-Misuse = Callable[["Intruder"], AsyncIterator[bytes]]
+Misuse = Callable[["Intruder"], AsyncIterator[str | bytes]]
+"""Yields texts for the page's own websocket, and bytes for viser's."""
 
 
 class Intruder(Browser):
@@ -62,21 +63,16 @@ class Intruder(Browser):
         rate: messages per second.
 
     Attributes:
-        widgets: the ids of its widgets by label.
-        socket: its connection, once it has begun.
+        socket: its connection to viser, once it has begun.
     """
 
     def __init__(self, port: int, misuse: Misuse, rate: float = RATE) -> None:
         super().__init__(port, 0, SOURCE)
         self._misuse, self._rate = misuse, rate
-        self.widgets: dict[str, str] = {}
 
-    async def find(self, label: str) -> str:
-        """The id of the widget whose label begins so, as soon as there is one."""
-        while True:
-            for text, uuid in self.widgets.items():
-                if text.startswith(label):
-                    return uuid
+    async def arrive(self) -> None:
+        """Return when it is shown its lab."""
+        while not self.shown:
             await asyncio.sleep(TURNED_AWAY)
 
     @property
@@ -84,18 +80,11 @@ class Intruder(Browser):
         """The client whose nodes it may drag: its own."""
         return self._owner
 
-    def _heeds(self, kind: str) -> bool:
-        return kind.startswith("Gui") or super()._heeds(kind)
-
-    async def _answer(self, socket: ClientConnection, message: dict[str, Any]) -> None:
-        await super()._answer(socket, message)
-        if label := message.get("props", {}).get("label"):
-            self.widgets[label] = message["uuid"]
-
+    @override
     async def _use(self, socket: ClientConnection, until: float) -> None:
         self.socket = socket
         async for message in self._misuse(self):
-            await socket.send(message)
+            await (self.own if isinstance(message, str) else socket).send(message)
             await asyncio.sleep(1 / self._rate)
 
 
@@ -147,31 +136,29 @@ def scripts(number: int, say: Callable[[random.Random], str | bytes]) -> Attack:
     return attack
 
 
-def update(uuid: str, value: Any) -> bytes:
-    """The message of a widget whose value the user has changed, or of a pressed button."""
-    return packed("GuiUpdateMessage", uuid=uuid, updates={"value": value})
-
-
 # Attacks by a single tab.
 
 
-async def press(tab: Intruder, *presses: tuple[str, Any]) -> AsyncIterator[bytes]:
-    """Change widgets, given by the beginnings of their labels, in turn and without end."""
-    for label, value in cycle(presses):
-        yield update(await tab.find(label), value)
+async def repeat(tab: Intruder, *messages: dict[str, Any]) -> AsyncIterator[str | bytes]:
+    """Send messages in turn and without end."""
+    await tab.arrive()
+    for message in cycle(messages):
+        yield json.dumps(message)
 
 
-async def guess(tab: Intruder, typed: str, length: int, button: str) -> AsyncIterator[bytes]:
-    """Type random codes of a given length, and press a button."""
-    field, pressed = await tab.find(typed), await tab.find(button)
+async def guess(
+    tab: Intruder, length: int, ask: Callable[[str], dict[str, Any]]
+) -> AsyncIterator[str | bytes]:
+    """Ask with random codes of a given length."""
+    await tab.arrive()
     while True:
-        yield update(field, "".join(random.choices("abcdefghjkmnpqrstuvwxyz", k=length)))
-        yield update(pressed, True)
+        yield json.dumps(ask("".join(random.choices("abcdefghjkmnpqrstuvwxyz", k=length))))
 
 
-async def scribble(tab: Intruder) -> AsyncIterator[bytes]:
+async def scribble(tab: Intruder) -> AsyncIterator[str | bytes]:
     """A stroke that does not end."""
-    yield update(await tab.find("Draw freehand"), True)
+    await tab.arrive()
+    yield json.dumps({"is": "freehand"})
     for step in count():
         end = [0.2 + 0.1 * random.random(), 0.0, 0.1 + 0.1 * random.random()]
         phase = "update" if step % 100_000 else "start"
@@ -179,33 +166,33 @@ async def scribble(tab: Intruder) -> AsyncIterator[bytes]:
         yield packed("SceneNodeDragMessage", **DRAG | at | {"phase": phase, "end_position": end})
 
 
-async def send_nonsense(tab: Intruder) -> AsyncIterator[bytes]:
-    """Any field of any message with any value, any index of a drag, any value of any widget."""
-    await tab.find("K1")
+async def send_nonsense(tab: Intruder) -> AsyncIterator[str | bytes]:
+    """Any field of any message with any value, and any index of a drag."""
+    await tab.arrive()
     while True:
         for kind in random.choices(list(HONEST), k=3):
             field = random.choice(list(HONEST[kind]))
             yield packed(kind, **HONEST[kind] | {field: random.choice(HOSTILE)})
         at = {"name": "/grips", "owner": tab.owner, "instance_index": random.choice(INDEXES)}
         yield packed("SceneNodeDragMessage", **DRAG | at)
-        yield update(random.choice(list(tab.widgets.values())), random.choice(HOSTILE))
 
 
-async def leave(tab: Intruder) -> AsyncIterator[bytes]:
+async def leave(tab: Intruder) -> AsyncIterator[str | bytes]:
     """Close the tab as soon as it is shown its lab."""
-    await tab.find("K1")
+    await tab.arrive()
     yield GREETING
 
 
-async def read_nothing(tab: Intruder) -> AsyncIterator[bytes]:
+async def read_nothing(tab: Intruder) -> AsyncIterator[str | bytes]:
     """Never read what the server sends."""
-    await tab.find("K1")
+    await tab.arrive()
     tab.socket.transport.pause_reading()
+    tab.own.transport.pause_reading()
     yield GREETING
     await asyncio.sleep(inf)
 
 
-async def look_on(tab: Intruder) -> AsyncIterator[bytes]:
+async def look_on(tab: Intruder) -> AsyncIterator[str | bytes]:
     """Take a place, and nothing more."""
     await asyncio.sleep(inf)
     yield GREETING
@@ -263,26 +250,33 @@ def connections(
     return attack
 
 
-def pressing(*presses: tuple[str, Any]) -> Misuse:
-    """See `press`."""
-    return lambda tab: press(tab, *presses)
+def repeating(*messages: dict[str, Any]) -> Misuse:
+    """See `repeat`."""
+    return lambda tab: repeat(tab, *messages)
 
 
-ROBOT_LABELS = [robot_label(name, Words()) for name in ROBOTS]
-FILES = ("CSV", "Picture", "Record of my", "Recording")
+def guessing(length: int, ask: Callable[[str], dict[str, Any]]) -> Misuse:
+    """See `guess`."""
+    return lambda tab: guess(tab, length, ask)
+
+
+FILES = [{"is": "make", "file": file} for file in ("table", "picture", "report", "film")]
+ROBOT_CHOICES = [{"do": "ChooseRobot", "name": name} for name in ROBOTS]
 ATTACKS: dict[str, Attack] = {
-    "recordings": tabs(12, pressing(("Recording", True))),  # D1
+    "recordings": tabs(12, repeating({"is": "make", "file": "film"})),  # D1
     "silent tabs": connections(200, [GREETING]),  # D2
-    "other labs' codes": tabs(4, lambda tab: guess(tab, "Another code", 12, "Go to that")),  # D3
+    "other labs' codes": tabs(4, guessing(12, lambda code: {"is": "enter", "code": code})),  # D3
     "half-open": connections(1000, [b""], []),  # D4
     "strokes": tabs(4, scribble),  # D5
-    "class codes": tabs(20, lambda tab: guess(tab, "Class code", 6, "Join")),  # D6, D14
+    "class codes": tabs(
+        20, guessing(6, lambda code: {"is": "join", "code": code, "name": "Ada"})
+    ),  # D6, D14
     "unfinished": connections(300, [UNFINISHED]),  # D7
-    "files": tabs(8, pressing(*((name, True) for name in FILES))),  # D7
-    "identification": tabs(8, pressing(("Identify", True))),
-    "paths": tabs(8, pressing(*(("Path", name) for name in PATHS))),
-    "menus": tabs(8, pressing(("Robot…", True))),
-    "robots": tabs(8, pressing(("Robot…", True), *((label, True) for label in ROBOT_LABELS))),
+    "files": tabs(8, repeating(*FILES)),  # D7
+    "identification": tabs(8, repeating({"do": "Identify"})),
+    "paths": tabs(8, repeating(*({"do": "ChoosePath", "name": name} for name in PATHS))),
+    "sheets": tabs(8, repeating(*({"is": "ask", "what": what} for what in get_args(SheetName)))),
+    "robots": tabs(8, repeating(*ROBOT_CHOICES)),
     "all places": tabs(66, look_on),  # D10
     "nonsense": tabs(8, send_nonsense, MIXED),  # D16
     "wild scripts": scripts(8, wild_message),

@@ -6,23 +6,16 @@ import dataclasses
 import json
 import math
 import random
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any, get_args
 
 from websockets.frames import Opcode
 
-from onpath.app.channel.messages import (
-    Dark,
-    Hello,
-    JointSymbol,
-    Light,
-    Resized,
-    Seen,
-    Skip,
-    encoded,
-)
+from onpath.app.channel.messages import JointSymbol
+from onpath.app.channel.sheet_messages import SheetName
 from onpath.app.lab.commands.command_codec import page_commands
 from onpath.app.server.built_in_course import built_in_course
+from onpath.models.closed_loop.lab_settings import SETTINGS
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS
@@ -113,19 +106,32 @@ COMMANDS = [
     '{"do": "UseShared", "text": "ONPATH1-aaaa"}',
 ]
 """Messages for a data channel: some are no commands, others are commands that cost much."""
-OWN = [
-    encoded(each).decode()
-    for each in (
-        Resized(),
-        Skip(),
-        Seen(),
-        Dark(True),
-        Dark(False),
-        Hello(page="0" * 32),
-    )
-]
-OWN += [encoded(Light(symbol)).decode() for symbol in get_args(JointSymbol)]
-"""Messages of a page that are no commands."""
+ASKED: dict[str, dict[str, Any]] = {
+    "hello": {"page": "0" * 32},
+    "seen": {},
+    "dark": {"on": True},
+    "resized": {},
+    "skip": {},
+    "fields": {},
+    "set": {"name": "K1", "value": 500.0, "number": 1},
+    "light": {"symbol": "q_1"},
+    "plots": {"fields": ["xi"]},
+    "send": {"number": 1, "name": "a.csv", "size": 4, "use": {"kind": "path"}},
+    "part": {"number": 1, "content": "MCww"},
+    "drop": {"number": 1},
+    "make": {"file": "table"},
+    "freehand": {},
+    "ask": {"what": "laws"},
+    "prefer": {"name": "sounds", "on": True},
+    "view": {},
+    "summary": {},
+    "enter": {"code": "k7mf2xqa9tzr"},
+    "compare_laws": {"laws": ["path_following"], "obstruction": "brake"},
+    "join": {"code": "234567", "name": "Ada"},
+    "leave": {},
+    "teach": {"key": "k7mf2xqa9tzr"},
+}
+"""A message of each kind that a page sends besides commands."""
 NUMBERS = [-1e9, -1.0, -1e-9, 0.0, 1e-300, 0.05, 0.3, 1.0, 1e9]
 NAMES = [*("left", "right", "de", "en", "K1", "speed", "dt", "delay", "certain"), *ROBOTS, *LAWS]
 NAMES += [*presets(), *built_in_course().lessons]
@@ -149,19 +155,36 @@ _DRAWN: dict[str, Callable[[random.Random], Any]] = {
 
 
 def wild_message(draw: random.Random) -> str | bytes:
-    """A message for a data channel: a command with any values, or one of the above.
+    """A message for a data channel: a command or a request with any values, or one of the above.
 
     Few are no text; for these, a connection is closed.
     """
     kind = draw.random()
     if kind < 0.01:
         return draw.randbytes(100)
-    if kind < 0.2:
-        return draw.choice([*COMMANDS, *OWN])
+    if kind < 0.1:
+        return draw.choice(COMMANDS)
+    if kind < 0.4:
+        return wild_request(draw)
     commands: list[tuple[str, Any]] = [*page_commands().items()]
     name, command = draw.choice(commands)
     fields = {field.name: _value(str(field.type), draw) for field in dataclasses.fields(command)}
     return json.dumps({"do": name, **fields}, default=repr)
+
+
+def wild_request(draw: random.Random, kinds: Iterable[str] = ASKED) -> str:
+    """A message of a page that is no command, some of whose fields have other values or none.
+
+    Args:
+        kinds: one of these.
+    """
+    kind = draw.choice([*kinds])
+    others = [*NAMES, *NUMBERS, *HOSTILE, *get_args(JointSymbol), *get_args(SheetName), *SETTINGS]
+    found: dict[str, Any] = {"is": kind}
+    for name, value in ASKED[kind].items():
+        if (way := draw.random()) < 0.9:
+            found[name] = value if way < 0.5 else draw.choice(others)
+    return json.dumps(found, default=repr)
 
 
 def _value(kind: str, draw: random.Random) -> Any:

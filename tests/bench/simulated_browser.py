@@ -1,4 +1,4 @@
-"""Simulated browsers, which read everything that a lab sends, drag its robots and move its sliders.
+"""Simulated browsers, which read everything that a lab sends, drag its robots and set a gain.
 
 `python -m tests.bench.simulated_browser PORT CLIENTS SECONDS` writes what they observe, one
 line of JSON at a time; see `crowd`. They lower their own priority, because real browsers would not
@@ -13,10 +13,11 @@ import os
 import secrets
 import sys
 import time
-from collections.abc import AsyncGenerator
+from collections.abc import AsyncGenerator, Iterator
 from contextlib import aclosing, asynccontextmanager, suppress
 from dataclasses import dataclass, field
 from http import HTTPStatus
+from itertools import count
 from pathlib import Path
 from statistics import median
 from typing import Any
@@ -26,6 +27,7 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidMessage, InvalidStatus
 from websockets.typing import Subprotocol
 
+from onpath.app.channel.messages import AskForm, SetField, encoded
 from onpath.app.server.arrivals import PAGE_KEY
 from onpath.app.viser_adapter.data_channel import SUBPROTOCOL as DATA
 from tests.bench.client_protocol import (
@@ -42,11 +44,12 @@ from tests.bench.client_protocol import (
 LAST = 19  # the lowest priority
 TOGETHER = Path("/proc/self/autogroup")  # priority of a whole session, on Linux
 HAND_INTERVAL = 0.05  # [s] between a hand's messages; no browser sends more often
-CYCLE = 4.0  # [s]: pull, rest, move a slider, rest
+CYCLE = 4.0  # [s]: pull, rest, move the slider of a gain, rest
 MOVING = "/links"
 STEADY = 10  # poses after which a browser counts as settled
-ANSWERED = {"LocalStorageGetItemRequestMessage"}
-ANSWERED |= {"GuiSliderMessage", "BatchedMeshesMessage"}
+ANSWERED = {"LocalStorageGetItemRequestMessage", "BatchedMeshesMessage"}
+LAB = '{"is":"lab"'  # begins the message after which a page asks for its form
+ASK_FORM = encoded(AskForm()).decode()
 SEES = 2.0  # [s] between messages that the page is drawn
 
 
@@ -85,6 +88,7 @@ class Browser:
         shown: times at which it received new poses, [s].
         received: [B], also through the data channel.
         told: messages of the data channel.
+        own: that channel, while it is open.
     """
 
     port: int
@@ -93,8 +97,9 @@ class Browser:
     shown: list[float] = field(default_factory=list)
     received: int = 0
     told: int = 0
+    own: ClientConnection = field(init=False, repr=False)
     _page: str = field(default_factory=lambda: secrets.token_hex(16))
-    _slider: str = ""
+    _numbers: Iterator[int] = field(default_factory=lambda: count(1))
     _owner: str = ""
 
     async def browse(self, seconds: float) -> None:
@@ -103,10 +108,10 @@ class Browser:
         Raises:
             OSError, WebSocketException: the connection failed.
         """
-        async with self._greeted() as data, self._connected(SUBPROTOCOL) as socket:
+        async with self._greeted() as self.own, self._connected(SUBPROTOCOL) as socket:
             await socket.send(packed("ViewerCameraMessage", **CAMERA))
             until = time.monotonic() + seconds
-            does = self._read(socket), self._use(socket, until), self._talk(data)
+            does = self._read(socket), self._use(socket, until), self._talk(self.own)
             tasks = [asyncio.create_task(do) for do in does]
             try:
                 done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
@@ -144,8 +149,11 @@ class Browser:
     async def _talk(self, socket: ClientConnection) -> None:
         """Read what the page's own script is told."""
         async for text in socket:
+            assert isinstance(text, str)
             self.received += len(text)
             self.told += 1
+            if text.startswith(LAB):
+                await socket.send(ASK_FORM)
 
     async def _read(self, socket: ClientConnection) -> None:
         async for raw in socket:
@@ -166,13 +174,11 @@ class Browser:
         kind = message["type"]
         if reply := answer(message, {PAGE_KEY: self._page}):
             await socket.send(reply)
-        elif kind == "GuiSliderMessage" and message["props"]["label"].startswith("K1"):
-            self._slider = message["uuid"]
         elif kind == "BatchedMeshesMessage" and message["name"] == "/grips":
             self._owner = message["owner"]
 
     async def _use(self, socket: ClientConnection, until: float) -> None:
-        while not self._slider and time.monotonic() < until:
+        while not self._owner and time.monotonic() < until:
             await asyncio.sleep(HAND_INTERVAL)
         held = False
         while (now := time.monotonic()) < until:
@@ -183,8 +189,8 @@ class Browser:
                 await socket.send(self._pull(step, phase))
                 held = pulls
             elif 2.0 < phase < 3.0:
-                value = {"value": 400.0 + 10 * round(10 * (phase - 2.0))}
-                await socket.send(packed("GuiUpdateMessage", uuid=self._slider, updates=value))
+                value = 400.0 + 10 * round(10 * (phase - 2.0))
+                await self.own.send(encoded(SetField("K1", value, next(self._numbers))).decode())
             else:
                 rest = max(rest, (2.0 if phase < 2.0 else CYCLE) - phase)
             await asyncio.sleep(rest)

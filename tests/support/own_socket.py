@@ -67,6 +67,10 @@ class OwnSocket:
         """Close the websocket."""
         self._socket.close()
 
+    def tell(self, message: dict[str, Any]) -> None:
+        """Send a message or a command."""
+        self._socket.send(json.dumps(message))
+
     def kinds(self) -> set[str]:
         """The kinds of the messages so far."""
         return {message["is"] for message in list(self.told)}

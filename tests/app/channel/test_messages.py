@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import random
 from typing import Any, get_args
@@ -27,6 +28,7 @@ from onpath.app.lab.commands import Hold
 from onpath.app.lab.commands.command_codec import LONGEST, MOST_WHY
 from onpath.app.lab.lab import Command
 from onpath.assets import asset_path
+from tests.bench.hostile_messages import ASKED, wild_message
 
 SENT = [
     '{"is": "hello", "page": "00112233445566778899aabbccddeeff", "dark": true}',
@@ -163,3 +165,18 @@ def test_a_page_that_is_told_changes_knows_everything(
             known |= told
             before = state
         assert known == msgspec.json.decode(encoded(state))
+
+
+def test_there_is_an_honest_example_of_every_message_of_a_page() -> None:
+    kinds = {form.__struct_config__.tag: form for form in get_args(PageMessage)}
+    assert kinds.keys() == ASKED.keys()
+    for kind, fields in ASKED.items():
+        assert isinstance(read_message(json.dumps({"is": kind, **fields})), kinds[kind])
+
+
+@given(draw=st.randoms(use_true_random=False))
+def test_whatever_comes_by_a_pages_own_websocket_is_read_or_refused(draw: random.Random) -> None:
+    message = wild_message(draw)
+    if isinstance(message, str):
+        with contextlib.suppress(NoPageMessage):
+            read_message(message)

@@ -10,6 +10,7 @@ import asyncio
 import logging
 import math
 import os
+import random
 import select
 import signal
 import socket
@@ -18,13 +19,13 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from functools import partial
 from http import HTTPStatus
-from itertools import pairwise, product
+from itertools import cycle, islice, pairwise, product
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import pytest
@@ -33,15 +34,21 @@ import websockets.sync.client
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.typing import Subprotocol
 
+from onpath.app.channel.sheet_messages import SheetName
 from onpath.app.lab.loops.loop_cache import LoopCache
-from onpath.app.scene.build_queue import in_turn
+from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.server.arrivals import PAGE_KEY
 from onpath.app.server.lab_server import LabServer
 from onpath.app.server.server_options import ServerOptions
 from onpath.app.simulation.frame_length import FRAME
+from onpath.app.view.lab_form import form_of, values_in
 from onpath.app.viser_adapter.data_channel import SUBPROTOCOL as DATA
 from onpath.app.viser_adapter.frame_channel import MOST_UNSENT
 from onpath.app.viser_adapter.secure_server import Limits, make_server
+from onpath.lessons.words import ENGLISH
+from onpath.models.closed_loop.lab_settings import SETTINGS
+from onpath.models.control.sides import SIDES
+from onpath.models.paths.path_design import presets
 from tests.bench.client_protocol import CAMERA, SUBPROTOCOL, answer, packed, unpacked
 from tests.bench.hostile_messages import BROKEN, GARBAGE, VERSIONS
 from tests.bench.raw_socket import WAIT, answer_question, frames, is_closed, knock, say
@@ -94,33 +101,19 @@ class Guest:
     def send(self, kind: str, **fields: Any) -> None:
         self.socket.send(packed(kind, **fields))
 
-    def update(self, uuid: str, value: Any) -> None:
-        self.send("GuiUpdateMessage", uuid=uuid, updates={"value": value})
-
-    def pour(self, uuids: Iterable[str], values: Sequence[Any]) -> None:
-        """Update each widget with each value, almost as fast as the limit on changes allows.
+    def pour(self, messages: Iterable[dict[str, Any]]) -> None:
+        """Send messages by the page's own websocket, almost as fast as the limit on them allows.
 
         The pause is the attacker's rate; there is nothing to wait for.
         """
-        for uuid, value in product(uuids, values):
-            self.update(uuid, value)
+        for message in messages:
+            self.own.tell(message)
             time.sleep(1 / (0.9 * Limits().changes_per_second))
 
     @property
     def let_in(self) -> bool:
         """Whether it has a lab."""
         return "lab" in self.own.kinds()
-
-    @property
-    def handles(self) -> dict[str, Any]:
-        """All its widgets."""
-        return dict(self.client.gui._gui_input_handle_from_uuid)
-
-    def labelled(self, label: str) -> str:
-        """The widget whose label begins so; the shortest label is meant."""
-        labels = {uuid: getattr(handle, "label", "") for uuid, handle in self.handles.items()}
-        found = [uuid for uuid, own in labels.items() if own.startswith(label)]
-        return min(found, key=lambda uuid: len(labels[uuid]))
 
     def _read(self) -> None:
         with suppress(ConnectionClosed):
@@ -222,51 +215,39 @@ def quiet_log(
     assert "Traceback" not in "".join(capfd.readouterr())
 
 
-# Widgets.
+# Settings.
 
 NO_VALUES: list[Any] = [
     *(math.nan, math.inf, -math.inf, 1e300, -1e300, 2**63, 0.5, -1),
-    *("", "nan", "x" * 20_000, "ONPATH1-" + "a" * 5000, b"\xff", None),
-    *([], [math.nan] * 3, [1e300, -1e300], [[[]]], {"value": 1}, {"__binary_index": 0}),
+    *("", "nan", "x" * 20_000, "ONPATH1-" + "a" * 5000, None),
+    *([], [math.nan] * 3, [1e300, -1e300], [[[]]], {"value": 1}),
 ]
+TRIED = 300  # of all fields with all these values
 
 
-def test_no_widget_of_the_lab_takes_an_impossible_value(
+def test_no_field_of_the_lab_takes_an_impossible_value(
     server: LabServer, attacker: Guest, witness: Witness
 ) -> None:
     lab = attacker.scheduled.lab
-    handles = attacker.handles
-    assert len(handles) > 50
+    first = take_page_snapshot(lab, 1.0)
+    names = [*values_in(first, {}, (), ENGLISH), *SETTINGS]
+    tried = random.Random(0).sample([*product(names, NO_VALUES)], TRIED)
     with witness.served():
-        attacker.pour(handles, NO_VALUES)
+        attacker.pour(
+            {"is": "set", "name": name, "value": value, "number": number}
+            for number, (name, value) in enumerate(tried)
+        )
     wait_for(lambda: not lab._inbox)
     assert_sound(lab)
-    for handle in handles.values():
-        value = getattr(handle, "value", 0.0)
-        if isinstance(value, (int, float)):
-            low, high = (getattr(handle, name, None) for name in ("min", "max"))
-            assert math.isfinite(value)
-            assert (low is None or low <= value) and (high is None or value <= high)
-        elif getattr(handle, "options", None):
-            assert value in handle.options
+    last = take_page_snapshot(lab, 1.0)
+    for group in form_of(last, None, ENGLISH).groups:
+        for field in group.fields:
+            value = values_in(last, {}, (), ENGLISH).get(field.name)
+            if field.kind == "number":
+                assert isinstance(value, float | int) and field.low <= value <= field.high
+            elif field.kind == "choice" and field.name not in SIDES:
+                assert value in [option.value for option in field.options]
     assert attacker.id in feeds(server)  # it may go on
-
-
-def test_widgets_of_another_client_cannot_be_changed(
-    server: LabServer, attacker: Guest, witness: Witness
-) -> None:
-    victim = Guest(server)
-    before = {uuid: handle.value for uuid, handle in victim.handles.items()}
-    parameters = victim.scheduled.simulation.parameters
-    with witness.served():
-        attacker.pour(before, (True, 1, 1.0, "ellipse"))
-    assert victim.scheduled.simulation.parameters == parameters and victim.scheduled.lab.asked == 0
-    assert victim.scheduled.simulation.editor.design.name == "circle"
-    moving = ("GuiProgressBarHandle",)
-    after = victim.handles
-    changed = [u for u in before if after[u].value != before[u]]
-    assert [type(after[u]).__name__ for u in changed if type(after[u]).__name__ not in moving] == []
-    victim.socket.close()
 
 
 # Floods.
@@ -275,40 +256,24 @@ UNREAD = 100_000  # messages are more than buffers hold: some have been sent aft
 
 
 @pytest.mark.parametrize(
-    ("label", "values"),
+    "messages",
     [
-        ("Path", ["ellipse", "clover", "rounded square", "circle"]),
-        ("Identify", [True]),
-        ("Share this", [True]),
-        ("Recording", [True]),
+        [{"do": "ChoosePath", "name": name} for name in presets()],
+        [{"do": "Identify"}],
+        [{"do": "Share"}],
+        [{"is": "make", "file": "film"}],
+        [{"is": "ask", "what": what} for what in get_args(SheetName)],
     ],
+    ids=["paths", "identification", "share codes", "recordings", "sheets"],
 )
 @pytest.mark.usefixtures("quiet_log")
 def test_requesting_long_work_all_the_time_delays_only_the_sender(
-    attacker: Guest, witness: Witness, label: str, values: list[Any]
+    attacker: Guest, witness: Witness, messages: list[dict[str, Any]]
 ) -> None:
     """As fast as the limit on messages allows: the work, not the messages, is the burden."""
-    uuid = attacker.labelled(label)
     with witness.served():
-        attacker.pour([uuid], values * (200 // len(values)))
+        attacker.pour(islice(cycle(messages), 200))
     assert len(attacker.scheduled.lab._inbox) <= 500
-
-
-@pytest.mark.parametrize("label", ["Robot…", "Lessons", "Help and keys"])
-def test_a_window_that_is_opened_all_the_time_is_there_once(
-    attacker: Guest, witness: Witness, quiet_log: None, label: str
-) -> None:
-    attacker.update(attacker.labelled(label), True)
-    gui = attacker.client.gui
-    wait_for(lambda: gui._modal_handle_from_uuid)
-    with in_turn():  # nothing is being built
-        widgets, commands = len(attacker.handles), len(gui._command_handle_from_uuid)
-    with witness.served():
-        attacker.pour([attacker.labelled(label)], [True] * 200)
-    with in_turn():
-        assert len(gui._modal_handle_from_uuid) <= 1
-        assert len(attacker.handles) <= widgets
-        assert len(gui._command_handle_from_uuid) <= commands
 
 
 def test_a_flood_of_messages_closes_the_sender(

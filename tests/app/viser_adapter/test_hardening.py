@@ -19,9 +19,6 @@ import msgspec
 import pytest
 import viser
 import websockets.sync.client
-import zstandard
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
 from viser import _messages
 from viser.infra import _infra
 from websockets.asyncio.messages import Assembler
@@ -30,8 +27,7 @@ from websockets.typing import Origin, Subprotocol
 
 from onpath.app.common import error_log
 from onpath.app.common.allowance import Allowance
-from onpath.app.viser_adapter import file_uploads, secure_connection
-from onpath.app.viser_adapter.file_uploads import take_files
+from onpath.app.viser_adapter import secure_connection
 from onpath.app.viser_adapter.message_filter import MessageFilter
 from onpath.app.viser_adapter.secure_server import Limits, PortInUse, make_server
 from tests.support import waiting
@@ -48,53 +44,25 @@ CAMERA = {
     "look_at": [0.0, 0.0, 0.0],
     "up_direction": [0.0, 0.0, 1.0],
 }
-TRUE_VALUES = {
-    "slider": 2.5,
-    "steps": 3,
-    "number": 1.0,
-    "bounded": 1,
-    "checkbox": False,
-    "dropdown": "one",
-    "text": "hello",
-    "disabled": 1.0,
-    "progress": 10.0,
-}
 
 
 class Lab:
-    """The server under attack: every client gets one of each widget, and all callbacks note."""
+    """The server under attack: every client gets a box, and all callbacks note."""
 
     def __init__(self, **options: Any) -> None:
         self.server = make_server(port=0, **options)
         self.port = self.server.get_port()
         self.events: list[tuple[int, str, Any]] = []
-        self.widgets: dict[int, dict[str, Any]] = {}
+        self.boxes: dict[int, viser.BoxHandle] = {}
         self.server.on_client_connect(self._build)
 
     async def _build(self, client: viser.ClientHandle) -> None:
-        gui, true = client.gui, TRUE_VALUES
-        widgets: dict[str, Any] = {
-            "slider": gui.add_slider("slider", 0.0, 10.0, 0.1, true["slider"]),
-            "steps": gui.add_slider("steps", 1, 5, 1, true["steps"]),
-            "number": gui.add_number("number", true["number"]),
-            "bounded": gui.add_number("bounded", true["bounded"], min=0, max=9),
-            "checkbox": gui.add_checkbox("checkbox", true["checkbox"]),
-            "dropdown": gui.add_dropdown("dropdown", ("one", "two")),
-            "group": gui.add_button_group("group", ("left", "right")),
-            "text": gui.add_text("text", true["text"]),
-            "disabled": gui.add_number("disabled", true["disabled"], disabled=True),
-            "progress": gui.add_progress_bar(true["progress"]),
-            "upload": gui.add_upload_button("upload"),
-            "button": gui.add_button("button"),
-            "marker": gui.add_number("marker", 0),
-        }
-        for name, widget in widgets.items():
-            widget._impl.update_cb.append(self._note(client, name, lambda e: e.target.value))
-        box = client.scene.add_box("/box")
+        box, marker = client.scene.add_box("/box"), client.scene.add_box("/marker")
         box.on_drag("left")(self._note(client, "drag", lambda e: e.end_position))
         box.on_click(self._note(client, "click", lambda e: e.ray_origin))
+        marker.on_click(self._note(client, "marker", lambda e: e.ray_origin))
         client.camera.on_update(self._note(client, "camera", lambda c: tuple(c.position)))
-        self.widgets[client.client_id] = widgets
+        self.boxes[client.client_id] = box
 
     def _note(self, client: viser.ClientHandle, name: str, read: Callable[[Any], Any]) -> Any:
         async def note(event: Any) -> None:
@@ -121,41 +89,24 @@ class Browser:
             compression=None,
             close_timeout=0.5,
         )
-        self.told: dict[str, Any] = {}
         self.markers = 0
-        known = set(lab.widgets)
+        known = set(lab.boxes)
         if announce:
             self.send("ViewerCameraMessage", **CAMERA)
-            wait_for(lambda: set(lab.widgets) - known)
-            (self.id,) = set(lab.widgets) - known
+            wait_for(lambda: set(lab.boxes) - known)
+            (self.id,) = set(lab.boxes) - known
             self.settle()
             lab.events.clear()
 
     def send(self, kind: str, **fields: Any) -> None:
         self.socket.send(msgspec.msgpack.encode({"type": kind, **fields}))
 
-    def update(self, name: str, **updates: Any) -> None:
-        uuid = self.lab.widgets[self.id][name]._impl.uuid
-        self.send("GuiUpdateMessage", uuid=uuid, updates=updates)
-
     def settle(self) -> None:
         """Return when all that was sent before has been dealt with."""
         self.markers += 1
-        self.update("marker", value=self.markers)
-        wait_for(lambda: (self.id, "marker", self.markers) in self.lab.events)
-
-    def value_told(self, name: str) -> Any:
-        """The last value of a widget that the server has told this browser; waits for it."""
-        uuid = self.lab.widgets[self.id][name]._impl.uuid
-        while uuid not in self.told:
-            raw = self.socket.recv(timeout=WAIT)
-            assert isinstance(raw, bytes)
-            size = int.from_bytes(raw[8:16], "little")
-            window = msgspec.msgpack.decode(zstandard.decompress(raw[16 : 16 + size]))
-            for message in window["messages"]:
-                if message["type"] == "GuiUpdateMessage":
-                    self.told |= {message["uuid"]: message["updates"].get("value")}
-        return self.told[uuid]
+        at = (float(self.markers), 0.0, 0.0)
+        self.send("SceneNodeClickMessage", **click(self) | {"name": "/marker", "ray_origin": at})
+        wait_for(lambda: (self.id, "marker", at) in self.lab.events)
 
 
 wait_for = partial(waiting.wait_for, seconds=WAIT)
@@ -195,134 +146,10 @@ def bystander(lab: Lab) -> Iterator[Browser]:
     """After the test, whatever it did, this one must still be served."""
     browser = Browser(lab)
     yield browser
-    browser.update("slider", value=7.5)
+    browser.send("SceneNodeDragMessage", **drag(browser))
     browser.settle()
-    assert lab.heard(browser) == [("slider", 7.5)]
+    assert lab.heard(browser) == [("drag", (0.1, 0.0, 0.2))]
     browser.socket.close()
-
-
-# Widgets.
-
-HONEST = [
-    ("slider", 3.5, 3.5),
-    ("slider", 4, 4.0),
-    ("steps", 4, 4),
-    ("number", -1e6, -1e6),
-    ("bounded", 9, 9),
-    ("checkbox", True, True),
-    ("dropdown", "two", "two"),
-    ("group", "right", "right"),
-    ("text", "<b>π</b>", "<b>π</b>"),
-    ("button", True, True),
-]
-CLAMPED = [
-    ("slider", 1e9, 10.0),
-    ("slider", -1, 0.0),
-    ("steps", 2**60, 5),
-    ("steps", 4.7, 4),
-    ("bounded", -(2**60), 0),
-    ("text", "x" * 100_000, "x" * 2000),
-]
-NUMBERS = ["slider", "steps", "number", "bounded"]
-NOT_NUMBERS = [math.nan, math.inf, -math.inf, "3", "nan", True, None, [3.0], {"a": 1}, b"3"]
-REFUSED = [
-    *((name, value) for name in NUMBERS for value in NOT_NUMBERS),
-    *(("checkbox", value) for value in (1, 1.0, "true", None, [], [True])),
-    *(("dropdown", value) for value in ("three", "", 1, None, ["two"], {"two": 1})),
-    *(("text", value) for value in (1, None, ["x"], b"x", True)),
-    ("disabled", 2.0),
-    ("progress", 50.0),
-]
-
-
-@pytest.mark.usefixtures("no_errors")
-def test_honest_values_arrive(lab: Lab, attacker: Browser) -> None:
-    for name, value, _ in HONEST:
-        attacker.update(name, value=value)
-    attacker.settle()
-    assert lab.heard(attacker) == [(name, expected) for name, _, expected in HONEST]
-
-
-@pytest.mark.usefixtures("no_errors")
-def test_values_outside_the_limits_are_clamped(lab: Lab, attacker: Browser) -> None:
-    for name, value, expected in CLAMPED:
-        attacker.told.clear()
-        attacker.update(name, value=value)
-        attacker.settle()
-        assert lab.heard(attacker)[-1] == (name, expected)
-        assert type(lab.heard(attacker)[-1][1]) is type(TRUE_VALUES[name])
-        assert attacker.value_told(name) == expected
-
-
-@pytest.mark.usefixtures("no_errors")
-def test_impossible_values_reach_no_callback(
-    lab: Lab, attacker: Browser, bystander: Browser
-) -> None:
-    for name, value in REFUSED:
-        attacker.update(name, value=value)
-    for button, value in [("button", "yes"), ("button", 1), ("group", "middle"), ("group", 0)]:
-        attacker.update(button, value=value)
-    attacker.settle()
-    assert lab.heard(attacker) == []
-    held = {name: lab.widgets[attacker.id][name].value for name in TRUE_VALUES}
-    assert held == TRUE_VALUES
-
-
-@pytest.mark.parametrize("name", sorted(set(TRUE_VALUES) - {"disabled", "progress"}))
-def test_refused_browser_is_told_the_true_value(attacker: Browser, name: str) -> None:
-    attacker.update(name, value={"no": "thing"})
-    assert attacker.value_told(name) == TRUE_VALUES[name]
-
-
-@pytest.mark.parametrize(
-    "updates",
-    [
-        {"max": 1e9},
-        {"max": 1e9, "value": 3.0},
-        {"value": 3.0, "label": "<img src=x onerror=alert(1)>"},
-        {"update_cb": []},
-        {"sync_cb": None},
-        {"removed": True},
-        {"props": {}},
-        {"uuid": "other"},
-        {"no_such_thing": 1},
-        {},
-    ],
-)
-@pytest.mark.usefixtures("no_errors")
-def test_only_the_value_may_be_set(
-    lab: Lab, attacker: Browser, bystander: Browser, updates: dict[str, Any]
-) -> None:
-    slider = lab.widgets[attacker.id]["slider"]
-    before = vars(slider._impl).copy() | vars(slider._impl.props)
-    attacker.update("slider", **updates)
-    attacker.settle()
-    assert vars(slider._impl) | vars(slider._impl.props) == before
-    assert lab.heard(attacker) == []
-
-
-def test_a_disabled_button_cannot_be_pressed(lab: Lab, attacker: Browser) -> None:
-    button = lab.widgets[attacker.id]["button"]
-    for disabled, expected in ((True, 0), (False, 1)):
-        button.disabled = disabled
-        attacker.update("button", value=True)
-        attacker.settle()
-        assert len(lab.heard(attacker)) == expected
-
-
-@pytest.mark.usefixtures("no_errors")
-def test_no_client_reaches_the_widgets_or_nodes_of_another(
-    lab: Lab, attacker: Browser, bystander: Browser
-) -> None:
-    for name, widget in lab.widgets[bystander.id].items():
-        value = dict((each, value) for each, value, _ in HONEST).get(name, 1)
-        attacker.send("GuiUpdateMessage", uuid=widget._impl.uuid, updates={"value": value})
-    for owner in (str(bystander.id), ""):
-        attacker.send("SceneNodeDragMessage", **drag(bystander) | {"owner": owner})
-    attacker.settle()
-    bystander.settle()
-    assert lab.heard(bystander) == []
-    assert lab.heard(attacker) == []
 
 
 # Scene.
@@ -402,6 +229,19 @@ NO_SCENE_MESSAGE = [
 ]
 
 
+@pytest.mark.usefixtures("no_errors")
+def test_no_client_reaches_the_nodes_of_another(
+    lab: Lab, attacker: Browser, bystander: Browser
+) -> None:
+    for owner in (str(bystander.id), ""):
+        attacker.send("SceneNodeDragMessage", **drag(bystander) | {"owner": owner})
+        attacker.send("SceneNodeClickMessage", **click(bystander) | {"owner": owner})
+    attacker.settle()
+    bystander.settle()
+    assert lab.heard(bystander) == []
+    assert lab.heard(attacker) == []
+
+
 def test_honest_scene_messages_arrive(lab: Lab, attacker: Browser) -> None:
     for kind, fields, _ in SCENE.values():
         attacker.send(kind, **fields(attacker))
@@ -423,20 +263,15 @@ def test_messages_are_handled_in_the_order_in_which_they_were_sent(
             attacker.settle()
         if random.random() < 0.1:
             attacker.socket.ping()
-        kind = random.choice(["slider", "drag", "click", "camera"])
+        kind = random.choice(["drag", "click", "camera"])
         number = float(i)
-        if kind == "slider":
-            sent.append((kind, 0.1 + 9.0 * i / 200))
-            attacker.update(kind, value=sent[-1][1])
-        elif kind == "camera":
-            sent.append((kind, (number, 0.0, 0.0)))
+        sent.append((kind, (number, 0.0, 0.0)))
+        if kind == "camera":
             attacker.send("ViewerCameraMessage", **CAMERA | {"position": [number, 0.0, 0.0]})
         elif kind == "drag":
-            sent.append((kind, (number, 0.0, 0.0)))
             place = {"end_position": [number, 0.0, 0.0]}
             attacker.send("SceneNodeDragMessage", **drag(attacker) | place)
         else:
-            sent.append((kind, (number, 0.0, 0.0)))
             ray = {"ray_origin": [number, 0.0, 0.0]}
             attacker.send("SceneNodeClickMessage", **click(attacker) | ray)
     attacker.settle()
@@ -452,11 +287,11 @@ def test_a_callback_of_a_gesture_that_waits_is_an_error(
         await asyncio.sleep(0.0)
         lab.events.append((attacker.id, "waited", None))
 
-    lab.widgets[attacker.id]["number"].on_update(waits)
-    attacker.update("number", value=5.0)
+    lab.boxes[attacker.id].on_drag("left")(waits)
+    attacker.send("SceneNodeDragMessage", **drag(attacker))
     attacker.settle()
-    assert lab.heard(attacker) == [("number", 5.0)]
-    assert "a handler of GuiUpdateMessage waits" in caplog.text
+    assert lab.heard(attacker) == [("drag", (0.1, 0.0, 0.2))]
+    assert "a handler of SceneNodeDragMessage waits" in caplog.text
 
 
 @pytest.mark.usefixtures("no_errors")
@@ -510,13 +345,13 @@ def test_invalid_messages_are_skipped(lab: Lab, attacker: Browser, bystander: Br
 def test_a_message_that_is_too_large_closes_its_connection(
     lab: Lab, attacker: Browser, bystander: Browser
 ) -> None:
-    attacker.update("text", value="x" * 2_000_000)
+    attacker.send("ViewerCameraMessage", **CAMERA | {"name": "x" * 2_000_000})
     closed = closing(attacker).rcvd
     assert closed is not None and closed.code == 1009
     assert lab.heard(attacker) == []
 
 
-@pytest.mark.parametrize("flood", ["changes", "drags", "messages", "pings", "fragments"])
+@pytest.mark.parametrize("flood", ["drags", "messages", "pings", "fragments"])
 @pytest.mark.usefixtures("no_errors")
 def test_a_flood_of_messages_closes_its_connection_and_says_why(
     lab: Lab, attacker: Browser, bystander: Browser, flood: str
@@ -524,9 +359,7 @@ def test_a_flood_of_messages_closes_its_connection_and_says_why(
     def pour() -> None:
         with pytest.raises(ConnectionClosed):
             while True:
-                if flood == "changes":
-                    attacker.update("checkbox", value="no")
-                elif flood == "drags":
+                if flood == "drags":
                     attacker.send("SceneNodeDragMessage", **drag(attacker))
                 elif flood == "messages":
                     attacker.send("ViewerCameraMessage", **camera(attacker))
@@ -541,13 +374,12 @@ def test_a_flood_of_messages_closes_its_connection_and_says_why(
     pouring.join(WAIT)
     assert not pouring.is_alive()
     assert closed is not None and closed.code == 1008
-    counts_changes = flood in ("changes", "drags")
-    limit = "more than 25 changes" if counts_changes else "more than 120 messages"
+    limit = "more than 25 changes" if flood == "drags" else "more than 120 messages"
     assert closed.reason == f"{limit} per second"
 
 
 def test_a_brisk_but_honest_client_is_served(monkeypatch: pytest.MonkeyPatch) -> None:
-    """50 camera messages, 20 drags and 20 widgets a second, the most that viser's page sends.
+    """50 camera messages and 20 drags a second, the most that viser's page sends.
 
     And so for longer than a burst can carry.
     """
@@ -561,7 +393,7 @@ def test_a_brisk_but_honest_client_is_served(monkeypatch: pytest.MonkeyPatch) ->
         browser.send("ViewerCameraMessage", **camera(browser))
         if i % 5 in (0, 2):
             browser.send("SceneNodeDragMessage", **drag(browser))
-            browser.settle()  # a number box
+            browser.settle()  # before the clock goes on
         clock.now += 1 / 50
     browser.settle()
     assert len(brisk.heard(browser)) == 200 + 80
@@ -569,166 +401,7 @@ def test_a_brisk_but_honest_client_is_served(monkeypatch: pytest.MonkeyPatch) ->
     brisk.server.stop()
 
 
-# Uploads and the share tunnel.
-
-
-def parts_of(content: bytes, count: int) -> list[bytes]:
-    size = -(-len(content) // max(count, 1))
-    return [content[i * size : (i + 1) * size] for i in range(count)]
-
-
-class Sender:
-    """A page that sends files, and what its upload button took and refused."""
-
-    def __init__(self, lab: Lab) -> None:
-        self.browser, self.sent = Browser(lab), 0
-        self.taken, self.refused = list[bytes](), list[str]()
-        self.button = lab.widgets[self.browser.id]["upload"]
-        take_files(
-            self.button,
-            lambda _, content: self.taken.append(content),
-            lambda reason: self.refused.append(reason.code.removeprefix("error.file_")),
-        )
-
-    def begin(self, size: int, count: int, into: Any = None) -> dict[str, str]:
-        """Announce a file; returns what its parts name."""
-        self.sent += 1
-        source = (into or self.button)._impl.uuid
-        ids = {"source_component_uuid": source, "transfer_uuid": f"file {self.sent}"}
-        file = {"filename": "x" * 300, "mime_type": "text/plain"}
-        start = {**ids, **file, "part_count": count, "size_bytes": size}
-        self.browser.send("FileTransferStartUpload", **start)
-        return ids
-
-    def upload(self, content: bytes, count: int = 1) -> None:
-        """Send a file, as viser's page does."""
-        ids = self.begin(len(content), count)
-        for index, part in enumerate(parts_of(content, count)):
-            self.browser.send("FileTransferPart", **ids, part_index=index, content=part)
-
-    def under_way(self) -> int:
-        """The files of this page that the server holds parts of."""
-        self.browser.settle()
-        client = self.browser.lab.server.get_clients()[self.browser.id]
-        return len(client.gui._current_file_upload_states)
-
-
-@pytest.fixture
-def files(monkeypatch: pytest.MonkeyPatch) -> Iterator[Lab]:
-    """A lab that takes files of up to 1,000 bytes, any number in a row."""
-    monkeypatch.setattr(file_uploads, "FILES", 10_000)
-    lab = Lab(limits=Limits(max_upload_bytes=1000))
-    yield lab
-    lab.server.stop()
-
-
-@pytest.mark.usefixtures("no_errors")
-def test_no_file_is_taken_unless_the_server_wants_files(lab: Lab) -> None:
-    sender = Sender(lab)
-    sender.upload(b"abc")
-    sender.begin(3, 1, into=lab.widgets[sender.browser.id]["slider"])
-    assert sender.under_way() == 0
-    assert sender.taken == [] and sender.refused == ["size"]
-
-
-def test_a_file_is_taken_whole_and_one_that_is_not_as_announced_is_refused(files: Lab) -> None:
-    sender = Sender(files)
-    sender.upload(b"0123456789", 3)
-    wait_for(lambda: sender.taken)
-    sender.upload(b"x" * 1001)
-    sender.upload(b"x" * 900, file_uploads.MOST_PARTS + 1)
-    ids = sender.begin(2, 1)
-    sender.browser.send("FileTransferPart", **ids, part_index=0, content=b"more than it said")
-    ids = sender.begin(20, 2)
-    for index in (0, 0):
-        sender.browser.send("FileTransferPart", **ids, part_index=index, content=b"0123456789")
-    assert sender.under_way() == 0
-    assert sender.taken == [b"0123456789"]
-    assert sender.refused == ["size", "incoherent", "incoherent", "incoherent"]
-    sender.upload(b"", 0)
-    wait_for(lambda: len(sender.taken) == 2)
-    assert sender.button.value.content == b""  # nothing is kept
-
-
-def test_a_second_file_waits_for_the_first_which_has_limited_time(
-    files: Lab, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(file_uploads, "SECONDS", 0.3)
-    sender = Sender(files)
-    sender.begin(10, 2)
-    sender.upload(b"abc")
-    wait_for(lambda: sender.refused == ["busy", "late"])
-    assert sender.under_way() == 0
-    sender.upload(b"abc")
-    wait_for(lambda: sender.taken == [b"abc"])
-
-
-def test_files_have_a_rate_and_a_size_together(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(file_uploads, "FILES_PER_SECOND", 0.0)
-    monkeypatch.setattr(file_uploads, "MOST_TOGETHER", 1500)
-    lab = Lab(limits=Limits(max_upload_bytes=1000))
-    one, other = Sender(lab), Sender(lab)
-    one.begin(1000, 1)
-    assert one.under_way() == 1
-    other.begin(1000, 1)
-    assert other.under_way() == 0 and other.refused == ["often"]
-    one.browser.socket.close()
-    wait_for(lambda: one.browser.id not in lab.server.get_clients())
-    for k in range(file_uploads.FILES + 3):
-        other.upload(b"%d" % k)
-    other.browser.settle()
-    wait_for(lambda: len(other.taken) == file_uploads.FILES)
-    assert other.refused == ["often"] * 4
-    lab.server.stop()
-
-
-FILE_MESSAGES = st.lists(
-    st.one_of(
-        st.tuples(st.just("begin"), st.integers(-3, 1100), st.integers(-1, 70)),
-        st.tuples(st.just("part"), st.integers(0, 4), st.integers(-1, 5), st.integers(0, 600)),
-        st.tuples(st.just("file"), st.binary(max_size=1000), st.integers(1, 4)),
-    ),
-    min_size=1,
-    max_size=12,
-)
-
-
-@pytest.fixture
-def brief(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A file has a fifth of a second."""
-    monkeypatch.setattr(file_uploads, "SECONDS", 0.2)
-
-
-SLOW = [HealthCheck.function_scoped_fixture, HealthCheck.too_slow, HealthCheck.data_too_large]
-
-
-@pytest.mark.usefixtures("brief")
-@settings(max_examples=8, deadline=None, suppress_health_check=SLOW)
-@given(FILE_MESSAGES)
-def test_whatever_is_sent_only_whole_files_arrive_and_the_next_one_can_be_sent(
-    files: Lab, messages: list[tuple[Any, ...]]
-) -> None:
-    """Parts in any order, of any size, of files that were announced or not, or never end."""
-    sender, honest = Sender(files), list[bytes]()
-    known: list[dict[str, str]] = [{"source_component_uuid": "x", "transfer_uuid": "y"}]
-    for kind, *values in messages:
-        if kind == "begin":
-            known.append(sender.begin(*values))
-        elif kind == "part":
-            which, index, size = values
-            ids = known[which % len(known)]
-            sender.browser.send("FileTransferPart", **ids, part_index=index, content=b"p" * size)
-        else:
-            content, count = values
-            sender.upload(content, count if content else 0)
-            honest.append(content)
-        assert sender.under_way() <= 1
-    assert all(set(each) <= {ord("p")} or each in honest for each in sender.taken)
-    wait_for(lambda: not sender.under_way())
-    sender.upload(b"at last")
-    wait_for(lambda: b"at last" in sender.taken)
-    assert sender.under_way() == 0
-    sender.browser.socket.close()
+# The share tunnel.
 
 
 def test_no_client_opens_a_share_tunnel(
@@ -819,8 +492,7 @@ def test_one_warning_for_a_client_and_no_traceback(
 ) -> None:
     error_log._warned.clear()  # other tests have warned a lot lately
     for _ in range(20):
-        attacker.update("slider", value=math.nan)
-        attacker.update("slider", max=1e9)
+        attacker.send("ViewerCameraMessage", **CAMERA | {"fov": math.nan})
         attacker.socket.send(b"\xc1")
         attacker.send("SceneNodeDragMessage", **drag(attacker) | {"end_position": [math.nan] * 3})
     attacker.settle()
@@ -839,15 +511,14 @@ def failing(lab: Lab, browser: Browser, calls: list[str]) -> None:
         calls.append("async")
         raise RuntimeError("async")
 
-    async def fails_in_the_scene(_: Any) -> None:
-        calls.append("scene")
-        raise RuntimeError("scene")
+    async def fails_in_a_gesture(_: Any) -> None:
+        calls.append("gesture")
+        raise RuntimeError("gesture")
 
-    client = lab.server.get_clients()[browser.id]
-    lab.widgets[browser.id]["button"].on_click(fails)
-    lab.widgets[browser.id]["group"].on_click(fails_in_the_loop)
-    box = client.scene.add_box("/fails")
-    box.on_click(fails_in_the_scene)
+    box = lab.server.get_clients()[browser.id].scene.add_box("/fails")
+    box.on_click(fails)
+    box.on_click(fails_in_the_loop)
+    box.on_drag("left")(fails_in_a_gesture)
 
 
 def test_failing_callbacks_kill_nothing_and_are_logged_once_each(
@@ -860,13 +531,12 @@ def test_failing_callbacks_kill_nothing_and_are_logged_once_each(
     calls: list[str] = []
     failing(lab, attacker, calls)
     for _ in range(30):
-        attacker.update("button", value=True)
-        attacker.update("group", value="left")
         attacker.send("SceneNodeClickMessage", **click(attacker) | {"name": "/fails"})
+        attacker.send("SceneNodeDragMessage", **drag(attacker) | {"name": "/fails"})
     wait_for(lambda: len(calls) == 90)
     attacker.settle()
     assert {name: calls.count(name) for name in set(calls)} == dict.fromkeys(
-        ("plain", "async", "scene"), 30
+        ("plain", "async", "gesture"), 30
     )
     in_full = [record for record in caplog.records if record.exc_info]
     assert len(in_full) == 3
