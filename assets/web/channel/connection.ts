@@ -11,7 +11,7 @@ const OPENS = 40_000 // [ms] that a websocket may take to open; viser gives up a
 const VISERS = 5000 // [ms], viser's own limit
 const EACH = 1000 // [ms] until a picture that was lost is asked for again
 const LONGEST = 30_000 // [ms] between attempts that end before the picture is there
-const ASKS = 10_000 // [ms] between questions why our websocket does not open
+const ASKS = 10_000 // [ms] without our websocket, after which the page asks why it does not open, and from then on between questions
 const REFUSALS = 4 // greetings in a row that are refused, after which the page stays away
 const SLOW = 3000, MUCH = 0.75 // [ms] without a message, or with less than this share of the speed
 const SLEPT = 20_000, WAKES = 10_000 // [ms] between two looks of a page that slept; without a message after that
@@ -68,7 +68,10 @@ export class Connection {
             this.asked = now
             void this.ask()
         }
-        if (engine.isOpen) this.found = null
+        if (engine.isOpen) {
+            this.found = null
+            this.asked = now
+        }
         if (engine.connected && engine.lab && !this.final) picture.look(now, engine.lab.scene)
         if (picture.outdated) this.reload()
         this.say(this.cause(isThere))
