@@ -162,6 +162,16 @@ class PathEditor:
     def _faults(self, design: PathDesign) -> list[Fault]:
         return curve_faults(self.robot.margin, self._raised(design))
 
+    @property
+    def can_undo(self) -> bool:
+        """Whether there is an edit to undo."""
+        return bool(self._past)
+
+    @property
+    def can_redo(self) -> bool:
+        """Whether there is an undone edit to make again."""
+        return bool(self._future)
+
     def undo(self) -> bool:
         """Undo one edit; False if there is none."""
         return self._swap(self._past, self._future)

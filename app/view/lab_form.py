@@ -189,6 +189,7 @@ def values_in(
         if name not in ELSEWHERE:
             values[name] = getattr(settings, name)
     values["path"] = snapshot.edit.name
+    values["can_undo"], values["can_redo"] = snapshot.edit.can_undo, snapshot.edit.can_redo
     selected, points = snapshot.edit.selected, snapshot.edit.points
     values |= {"point": 0, "point_z1": 0.0, "point_z2": 0.0}
     if selected is not None and selected < len(points):
@@ -304,8 +305,8 @@ def _fields(lab: _Lab, marks: Mapping[str, FieldValue], words: Words) -> dict[st
             act={"is": "freehand"},
         ),
         _button("file", words("setup.file"), help=words("setup.file_hint")),
-        _button("undo", words("design.undo"), Undo()),
-        _button("redo", words("design.redo"), Redo()),
+        _button("undo", words("design.undo"), Undo(), needs="can_undo"),
+        _button("redo", words("design.redo"), Redo(), needs="can_redo"),
         *_law_fields(robot, chosen, words),
         _button("laws", words("laws.about")),
         _button("compare", words("setup.compare")),
@@ -346,10 +347,17 @@ def _fields(lab: _Lab, marks: Mapping[str, FieldValue], words: Words) -> dict[st
     return {field.name: field for field in found}
 
 
-def _button(name: str, label: str, command: Command | None = None, help: str = "") -> FormField:
-    """A button; without a command, the page knows what its name means."""
+def _button(
+    name: str, label: str, command: Command | None = None, help: str = "", needs: str = ""
+) -> FormField:
+    """A button; without a command, the page knows what its name means.
+
+    Args:
+        needs: the value without which it is not shown.
+    """
     act = None if command is None else message_of(command)
-    return FormField(name=name, kind="button", label=label, act=act, help=help)
+    conditions = ((FormNeed(needs),),) if needs else ()
+    return FormField(name=name, kind="button", label=label, act=act, help=help, needs=conditions)
 
 
 def _switch(name: str, key: str, words: Words) -> FormField:

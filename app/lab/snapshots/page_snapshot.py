@@ -68,6 +68,7 @@ class PathEdit:
         sampled: points of the last valid design, shape (n, 2), [m].
         points: control points as shown, shape (k, 2), [m].
         selected: index of the selected control point, or None.
+        can_undo, can_redo: whether there is an edit to undo, or one that was undone.
     """
 
     version: int
@@ -75,6 +76,8 @@ class PathEdit:
     sampled: np.ndarray
     points: np.ndarray
     selected: int | None
+    can_undo: bool
+    can_redo: bool
 
 
 @dataclass(frozen=True, slots=True)

@@ -264,6 +264,8 @@ def _path_edit(simulation: Simulation) -> PathEdit:
         sampled=_sampled(editor.design),
         points=editor.points(),
         selected=editor.selected,
+        can_undo=editor.can_undo,
+        can_redo=editor.can_redo,
     )
 
 

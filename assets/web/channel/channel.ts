@@ -21,6 +21,7 @@ const REFUSED = 4001 // the lab does not take the greeting
 const OTHER_VERSION = 1002
 const HANDED = 60 // [ms], at least, between two looks at the past
 const KEPT = ["labs", "teacher", "speaks", "sounds", "first_minute"]
+const FIRST_SHAPE = 1.75 // of the picture for which the lab's first camera is; see app/scene/stage.py
 const SEES = 2000 // [ms] between messages that the page is drawn
 const SETTLES = 400 // [ms], until what the server shows counts again
 
@@ -147,6 +148,7 @@ export class RemoteEngine implements Engine {
     seat: ClassMessage | null = null
     /** Whether the page has offered to join the class. */
     hasGreeted = false
+    shape = FIRST_SHAPE // width of the picture over its height
     private samples: Sample[] = [] // the last one is the present
     private fields: Fields = new Map()
     private plotted: readonly string[] = [] // fields that are asked for
@@ -174,6 +176,13 @@ export class RemoteEngine implements Engine {
     askForm(): void {
         if (!this.asksForm) this.send({ is: "fields" })
         this.asksForm = true
+    }
+
+    /** How each robot is seen, see StateMessage; until there is a picture, a window of any shape shows all of them. */
+    get cameras(): readonly (readonly (readonly number[])[])[] {
+        const { cameras, drawn } = this.lab!
+        const share = drawn ? 1 : Math.min(this.shape / FIRST_SHAPE, 1)
+        return share === 1 ? cameras : cameras.map(([across, down, depth]) => [across!.map(each => share * each), down!.map(each => share * each), depth!])
     }
 
     /** Whether the websocket is open. */

@@ -154,8 +154,9 @@ class Face {
 
     /** Follow viser's canvas, which changes its size, or is replaced. Not to be called by a ResizeObserver, or a lens misses its own new size. */
     place(): void {
-        const canvas = document.querySelector<HTMLElement>("canvas[data-engine]")
+        const canvas = webgl.works ? document.querySelector<HTMLElement>("canvas[data-engine]") : null
         const { left, top, width, height } = canvas?.getBoundingClientRect() ?? this.room()
+        if (height > 0) this.engine.shape = width / height
         if (canvas && (width !== this.width || height !== this.height)) {
             clearTimeout(this.resizing)
             this.resizing = window.setTimeout(() => this.engine.send({ is: "resized" }), RESTS)

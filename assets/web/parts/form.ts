@@ -35,11 +35,9 @@ export class Form implements RowForm {
         const fields = data.groups.flatMap(group => group.fields)
         for (const field of fields) {
             const row = this.rows.get(field.name)
-            if (row?.fits(field)) row.field = field
-            else {
-                row?.element.remove()
-                this.rows.set(field.name, rowOf(field, this, this.signal))
-            }
+            if (row?.fits(field)) continue
+            row?.element.remove()
+            this.rows.set(field.name, rowOf(field, this, this.signal))
         }
         const names = new Set(fields.map(field => field.name))
         for (const [name, row] of this.rows)

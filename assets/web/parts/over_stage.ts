@@ -53,7 +53,7 @@ export class OverStage {
     /** Put the titles over the robots, where the camera shows them. */
     arrange(): void {
         const { width, height } = this
-        const { cameras, above } = this.engine.lab!
+        const { cameras } = this.engine, { above } = this.engine.lab!
         const middles = cameras.map(camera => width / 2 + height * projected(camera, above)[0])
         const key = JSON.stringify([width, middles.map(Math.round)])
         if (key === this.placed) return

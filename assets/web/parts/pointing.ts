@@ -57,8 +57,8 @@ function middleOf(selector: string): Pixel | null {
 }
 
 /** A point of a robot's output space in the picture. */
-function onStage({ lab }: RemoteEngine, point: Vector, side: number): Pixel | null {
-    const stage = document.querySelector("#op-stage")?.getBoundingClientRect(), camera = lab!.cameras[side]
+function onStage({ cameras }: RemoteEngine, point: Vector, side: number): Pixel | null {
+    const stage = document.querySelector("#op-stage")?.getBoundingClientRect(), camera = cameras[side]
     if (!stage || !camera) return null
     const [x, y] = projected(camera, point)
     return [stage.left + stage.width / 2 + x * stage.height, stage.top + stage.height / 2 + y * stage.height]

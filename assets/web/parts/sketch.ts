@@ -25,7 +25,7 @@ export class Sketch {
         const ink = sheet.cleared()
         if (!ink) return
         shown(engine).sides.forEach((sample, i) => {
-            const colours = tones(), camera = engine.lab!.cameras[i]!
+            const colours = tones(), camera = engine.cameras[i]!
             const pixel = (point: Vector): Pixel => {
                 const [x, y] = projected(camera, point)
                 return [sheet.width / 2 + x * sheet.height, sheet.height / 2 + y * sheet.height]

@@ -32,8 +32,8 @@ export class SymbolOverlay {
 
     /** In the plane of the path; of a robot in space, in that of the picture. */
     private light(ink: CanvasRenderingContext2D, sample: SideSample, side: number): void {
-        const { engine: { path, lab }, sheet: { width, height } } = this
-        const camera = lab!.cameras[side]!
+        const { engine: { path, lab, cameras }, sheet: { width, height } } = this
+        const camera = cameras[side]!
         const project = (point: Vector): Point => {
             const [x, y] = projected(camera, point)
             return [width / 2 + x * height, height / 2 + y * height]

@@ -18,7 +18,7 @@ from onpath.app.channel.messages import (
     SetField,
     ValuesMessage,
 )
-from onpath.app.lab.commands import AddPoint, ChooseLaw, ChoosePath, TypeLaw
+from onpath.app.lab.commands import AddPoint, ChooseLaw, ChoosePath, Redo, TypeLaw, Undo
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.scene.stage_catalogue import stage_of
@@ -285,3 +285,20 @@ def test_why_a_typed_law_is_refused_is_told_once_where_it_is_typed(side: str) ->
     lab.drain()
     assert refusals_in(take_page_snapshot(lab, 1.0)) == {f"typed_{side}": lab.message}
     assert lab.message
+
+
+def test_an_edit_can_be_undone_once_there_is_one() -> None:
+    lab = Lab(loop_cache())
+
+    def offered() -> tuple[Any, ...]:
+        values = values_in(take_page_snapshot(lab, 1.0), {}, (), ENGLISH)
+        return values["can_undo"], values["can_redo"]
+
+    assert offered() == (False, False)
+    for command, then in (
+        (ChoosePath("rounded square"), (True, False)),
+        (Undo(), (False, True)),
+        (Redo(), (True, False)),
+    ):
+        command.apply(lab)
+        assert offered() == then

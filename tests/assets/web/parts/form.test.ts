@@ -168,6 +168,20 @@ test("other fields leave the focus and what is half typed as they are", () => {
     }
 })
 
+test("another language renames all that stays", () => {
+    const { form } = opened()
+    const german = (text: string) => `${text} auf Deutsch`
+    const groups = FORM.groups.map(group => ({
+        ...group, title: german(group.title), fields: group.fields.map(field => ({ ...field, label: german(field.label) })),
+    }))
+    form.show({ ...FORM, groups })
+    for (const { fields } of groups)
+        for (const { name, label } of fields) {
+            const row = form.element.querySelector(`[data-name="${name}"]`)!
+            assert.ok(row.textContent.includes(label.split(" ").slice(1).join(" ")), `${name}: ${row.textContent}`) // a symbol is written as such
+        }
+})
+
 test("a text counts when it is used, and Escape forgets it", () => {
     const { row, values } = opened()
     const area = row("law").querySelector("textarea")!, use = row("law").querySelector<HTMLButtonElement>(".use")!
