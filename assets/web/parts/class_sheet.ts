@@ -90,7 +90,7 @@ export class ClassSheet {
             leave.disabled = true
             this.send({ is: "leave" })
         }))
-        return [made("p", "", before, made("b", "", made("bdi", "", seat.name)), after), made("p", "", said(texts, "class.next")), this.stored(seat), leave, this.refusal]
+        return [made("p", "", before, made("b", "", made("bdi", "", seat.name)), after), made("p", "", said(texts, "class.then")), this.stored(seat), leave, this.refusal]
     }
 
     private key(): HTMLElement[] {

@@ -7,6 +7,7 @@ import dataclasses
 import pickle
 import re
 import sys
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from functools import cache
 from pathlib import Path
@@ -26,6 +27,7 @@ from onpath.app.page.teaching.teacher_panel import TeacherPanel
 from onpath.app.storage.records import NotKept
 from onpath.app.view.keys import KEYS
 from onpath.app.view.lab_form import GROUPS, SECTIONS
+from onpath.assets import asset_path
 from onpath.assets.messages import catalogue, identifier, languages
 from onpath.lessons.labels import (
     option_label,
@@ -595,3 +597,10 @@ def test_plots_call_eta_what_the_paper_does() -> None:
             title = said(f"axis.{name}")
             assert title.startswith(symbol) and re.search(r"\[.+\]$", title)
             assert said(f"plot.{name}").startswith(symbol)
+
+
+@pytest.mark.parametrize("language", languages())
+def test_no_message_is_defined_twice(language: str) -> None:
+    text = asset_path(f"words/{language}.ftl").read_text(encoding="utf-8")
+    keys = re.findall(r"^([a-z][\w-]*) =", text, re.MULTILINE)
+    assert [key for key, count in Counter(keys).items() if count > 1] == []
