@@ -13,6 +13,7 @@ from typing import Annotated, Any, Literal
 import msgspec
 from msgspec import UNSET, Meta, Struct, UnsetType
 
+from onpath.app.channel.class_messages import Lead
 from onpath.app.channel.sheet_messages import (
     ClassMessage,
     Compared,
@@ -28,6 +29,7 @@ from onpath.app.channel.sheet_messages import (
     SeatAnswer,
     Told,
 )
+from onpath.app.lab.setups.share_code import LONGEST_TEXT
 from onpath.app.viser_adapter.file_uploads import LONGEST_NAME
 from onpath.lessons.checks import Verdict
 
@@ -38,6 +40,10 @@ JointSymbol = Literal["q_1", "q_2", "delta", "rho"]
 
 Kept = Annotated[str, Meta(max_length=500)]
 """What a browser has kept; empty if nothing."""
+
+
+Typed = Annotated[str, Meta(max_length=LONGEST_TEXT)]
+"""A law, for instance, or a share code."""
 
 
 class Hello(
@@ -96,7 +102,7 @@ class SetField(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", 
     """
 
     name: Annotated[str, Meta(max_length=60)]
-    value: bool | Annotated[float, Meta(ge=-1e9, le=1e9)] | Annotated[str, Meta(max_length=2000)]
+    value: bool | Annotated[float, Meta(ge=-1e9, le=1e9)] | Typed
     number: int
 
 
@@ -200,6 +206,7 @@ PageMessage = (
     | SendPart
     | DropFile
     | MakeFile
+    | Lead
     | Request
 )
 """What a page sends besides commands; `Hello` comes first, and only once."""
@@ -495,7 +502,8 @@ class FormOption(Struct, frozen=True, omit_defaults=True, kw_only=True):
 
 class FormField(Struct, frozen=True, omit_defaults=True, kw_only=True):
     """A row of a form. Its value is told by its name; a note's is what it says. The value of
-    `poles` has a line for each pole: its channel, its real and its imaginary part, [1/s].
+    `poles` has a line for each pole: its channel, its real and its imaginary part, [1/s]; that of
+    "html" comes from a template that escapes what users have typed.
 
     Attributes:
         help: what one will see, in a sentence.
@@ -507,6 +515,7 @@ class FormField(Struct, frozen=True, omit_defaults=True, kw_only=True):
         default: to which one goes back; None: there is no way back.
         mark: the value of a lesson's step.
         act: the command that a button sends.
+        asks: the question that it asks before it does.
         tone: of a note or a button: "main", "warning" or none; of a note also the side whose colour
             it has, "of_left" or "of_right", or "ranks", below the colours of the rank test's map.
         picture: the address of a button's picture.
@@ -514,7 +523,7 @@ class FormField(Struct, frozen=True, omit_defaults=True, kw_only=True):
     """
 
     name: str
-    kind: Literal["number", "choice", "switch", "button", "text", "note", "poles"]
+    kind: Literal["number", "choice", "switch", "button", "text", "note", "poles", "html"]
     label: str
     symbol: str = ""
     unit: str = ""
@@ -531,6 +540,7 @@ class FormField(Struct, frozen=True, omit_defaults=True, kw_only=True):
     default: FieldValue | None = None
     mark: FieldValue | None = None
     act: Mapping[str, Any] | None = None
+    asks: str = ""
     tone: str = ""
     section: str = ""
     picture: str = ""
@@ -558,7 +568,7 @@ class FormMessage(
 ):
     """All fields of a place; without groups, there is no such place now."""
 
-    place: Literal["lab", "step", "figure"]
+    place: Literal["lab", "step", "figure", "class"]
     groups: tuple[FormGroup, ...]
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+from onpath.app.classroom.teaching.teacher_context import TeacherContext
 from onpath.app.common.presses import Presses
 from onpath.app.page.page_text import PageText
 from onpath.app.page.panels.widgets import Post
@@ -45,6 +46,7 @@ class PageContext:
         look: how the scene is to be drawn.
         privacy_url: the address of the site's privacy notice; empty if it has none.
         presses: limit what the tab asks for that takes long.
+        teaching: of a teacher's page.
         text: what our own part of the page says.
     """
 
@@ -58,3 +60,4 @@ class PageContext:
     look: Look = field(default_factory=Look)
     privacy_url: str = ""
     presses: Presses = field(default_factory=Presses)
+    teaching: TeacherContext | None = None

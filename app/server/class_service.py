@@ -161,6 +161,7 @@ class ClassService:
         return TeacherContext(
             classroom=self._class,
             chosen=chosen,
+            may_lead=lambda: self._class.is_pass(shown),
             address=f"{site}{class_address(self._class.code)}",
             is_local=is_local(site),
             progress=lambda: lab.lessons.progress,

@@ -298,6 +298,7 @@ class LabServer:
             look=visit.look,
             privacy_url=self._options.privacy_url,
             presses=visit.presses,
+            teaching=teaching,
         )
         make = Page if teaching is None else partial(TeacherPage, teaching=teaching)
         return LabFeed(

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from msgspec import Struct
 
+from onpath.app.channel.class_messages import Lead
 from onpath.app.channel.data_frame import LENGTH, FrameSource, frame_message, path_message
 from onpath.app.channel.messages import (
     Alive,
@@ -19,6 +20,7 @@ from onpath.app.channel.messages import (
     DropFile,
     Hello,
     LabCode,
+    LessonMessage,
     Light,
     LitMessage,
     MakeFile,
@@ -47,6 +49,7 @@ from onpath.app.page.page_context import PageContext
 from onpath.app.page.page_requests import PageRequests
 from onpath.app.scene.projection import seen_at_first
 from onpath.app.scene.stage_catalogue import stage_of
+from onpath.app.server.page_class import PageClass, is_of_class
 from onpath.app.server.page_files import PageFiles
 from onpath.app.server.page_form import PageForm
 from onpath.app.server.tab_visibility import TabVisibility
@@ -89,7 +92,12 @@ class PageData:
         self._files = PageFiles(own.post, context.code if context.keep_days else "")
         self._server = PageRequests(context, self._files.exporter)
         self._thread = WorkThread("page")
-        self._form = PageForm(own.post, self._thread.submit)
+        teaching = context.teaching
+        self._form = PageForm(own.post, self._thread.submit, teaches=teaching is not None)
+        self._class: PageClass | None = None
+        if teaching is not None:
+            delivery = self._files.delivery
+            self._class = PageClass(teaching, context.course, own.post, delivery)
         self._is_resized = self._skips = False
         self._requests, self._answers = deque[Request](), deque[Struct](maxlen=MOST_REQUESTS)
         self._lesson = self._measured = b""
@@ -104,6 +112,8 @@ class PageData:
         self._files.close()
         self._thread.close()
         self._text.close()
+        if self._class is not None:
+            self._class.close()
 
     def follow(
         self,
@@ -125,6 +135,8 @@ class PageData:
             self._opened = stream.opened
             self._files.restart()
             self._form.restart()
+            if self._class is not None:
+                self._class.restart()
             self._source.forget()
             self._path, self._state, self._class, self._language = None, None, None, ""
             self._lesson = self._measured = b""
@@ -190,6 +202,8 @@ class PageData:
         if self._form.is_asked:
             news = self._form.news(snapshot, page, self._context.course, text.words)
             messages += [partial(encoded, each) for each in news]
+            if self._class is not None:
+                messages += [partial(encoded, each) for each in self._class.news()]
         while self._answers:
             messages.append(partial(encoded, self._answers.popleft()))
         if messages:
@@ -208,6 +222,9 @@ class PageData:
 
     def _of_lesson(self) -> list[Message]:
         column, messages = self._text.column, list[Message]()
+        if column is None and not self._lesson:  # a teacher's page has none
+            self._lesson = encoded(LessonMessage(lesson="", version=0))
+            messages.append(partial(bytes, self._lesson))
         if column is not None and column.message:
             if column.message is not self._lesson:
                 self._lesson, self._measured = column.message, b""
@@ -253,6 +270,10 @@ class PageData:
                 return encoded(Refused("this lab is only shown"))
             case SendFile() | SendPart() | DropFile() | MakeFile():
                 return self._hear_file(message)
+            case Lead():
+                return self._hear_teacher(message)
+            case SetField() if is_of_class(message):
+                return self._hear_teacher(message)
             case AskForm() | SetField():
                 self._form.hear(message, self._is_own)
             case Hello():
@@ -279,6 +300,12 @@ class PageData:
                 self._symbol = symbol
             case Plot(fields=fields):
                 self._plotted = fields
+
+    def _hear_teacher(self, message: Lead | SetField) -> bytes:
+        """Take an order to the class; returns why not, if the page may give none."""
+        if self._class is None or not self._class.hear(message):
+            return encoded(Refused("only a teacher of the class may do this"))
+        return b""
 
     def _hear_file(self, message: SendFile | SendPart | DropFile | MakeFile) -> bytes:
         """Take a message about a file; returns the answer, if there is one. On the event loop."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import ClassVar
 
 import numpy as np
@@ -19,6 +19,7 @@ from onpath.app.channel.messages import (
     SetField,
     ValuesMessage,
 )
+from onpath.app.classroom.teaching.teacher_form import NO_CLASS
 from onpath.app.common.background import Background, Submit
 from onpath.app.lab.commands import ChooseLaw, ChoosePath, PlacePoint, SelectPoint, Set, TypeLaw
 from onpath.app.lab.lab import Command, Lab
@@ -30,6 +31,7 @@ from onpath.app.view.lab_form import (
     NO_STEP,
     PULLS,
     SWITCHES,
+    drawn_form,
     form_of,
     refusals_in,
     switch_name,
@@ -72,10 +74,14 @@ class PageForm:
     Args:
         post: of the lab that the page may change.
         submit: runs a function in another thread.
+        teaches: whether the page is a teacher's, which has no form of a step; of a student's lab
+            it has what is drawn alone.
     """
 
-    def __init__(self, post: Callable[[Command], None], submit: Submit) -> None:
-        self._post, self.is_asked = post, False
+    def __init__(
+        self, post: Callable[[Command], None], submit: Submit, teaches: bool = False
+    ) -> None:
+        self._post, self.is_asked, self._teaches = post, False, teaches
         self._heard = dict[str, int]()
         self._own = deque[SetField]()  # what concerns the page alone
         self._typing = set[str]()  # sides for which a law is being typed
@@ -86,7 +92,7 @@ class PageForm:
     def restart(self) -> None:
         """Forget what the page knows, and what it has asked for."""
         self.is_asked = False
-        self._forms: tuple[FormMessage | None, ...] = None, None
+        self._forms: tuple[FormMessage | None, ...] = (None,) * 3
         self._values, self._refused = dict[str, FieldValue](), dict[str, str]()
         self._told = dict[str, int]()
 
@@ -172,11 +178,13 @@ class PageForm:
                 page.pull = str(message.value)
             self._hear(message.name, message.number)
             heard[message.name] = message.number
-        setup = _setup(snapshot, course, words)
+        setup = None if self._teaches else _setup(snapshot, course, words)
         step = NO_STEP if setup is None else form_of(snapshot, setup, words)
-        forms = form_of(snapshot, None, words), step
+        make = drawn_form if snapshot.key.student else partial(form_of, setup=None)
+        klass = None if self._teaches else NO_CLASS
+        forms = make(snapshot, words=words), step, klass
         for form, before in zip(forms, self._forms, strict=True):
-            if form is not before:
+            if form is not None and form is not before:
                 yield form
         self._forms = forms
         drawn = {name: name in switches for name in SWITCHES}

@@ -153,6 +153,11 @@ def form_of(snapshot: PageSnapshot, setup: StepSetup | None, words: Words) -> Fo
     return _step_form(lab, setup.controls, tuple(setup.set.items()), words)
 
 
+def drawn_form(snapshot: PageSnapshot, words: Words) -> FormMessage:
+    """The form of a lab at which one can only look."""
+    return _drawn_form(snapshot.key.robot, words)
+
+
 @dataclass(frozen=True, slots=True)
 class _Lab:
     """What the fields of a lab depend on.
@@ -251,6 +256,16 @@ def _lab_form(lab: _Lab, words: Words) -> FormMessage:
             for name, level in GROUPS.items()
             if groups[name]
         ),
+    )
+
+
+@lru_cache(maxsize=64)
+def _drawn_form(robot: str, words: Words) -> FormMessage:
+    fields = _fields(_Lab(robot=robot, laws=(), path="", points=0), {}, words)
+    drawn = [field for name in SWITCHES if (field := fields.get(switch_name(name))) is not None]
+    title = words("form.group_view")
+    return FormMessage(
+        place="lab", groups=(FormGroup(name="view", title=title, fields=tuple(drawn)),)
     )
 
 

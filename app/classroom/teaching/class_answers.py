@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 
 from onpath.app.classroom import class_html as page
 from onpath.app.classroom.classroom import MOST_MEMBERS, Display
@@ -28,10 +29,21 @@ from onpath.lessons.words import Words
 
 
 class ClassAnswers:
-    """The answers to the displayed question."""
+    """The answers to the displayed question.
 
-    def __init__(self, course: Course, words: Words, teaching: TeacherContext) -> None:
+    Args:
+        submit: runs what takes long, perhaps later; the truth is not known until then.
+    """
+
+    def __init__(
+        self,
+        course: Course,
+        words: Words,
+        teaching: TeacherContext,
+        submit: Callable[[Callable[[], None]], None] = lambda work: work(),
+    ) -> None:
         self._course, self._words, self._teaching = course, words, teaching
+        self._submit = submit
         self._computed: dict[tuple[str, int], Truth | None] = {}
 
     @property
@@ -102,8 +114,13 @@ class ClassAnswers:
     def _truth_at(self, lesson: Lesson, at: int) -> Truth | None:
         """The result of the experiment, computed once if nobody has run it."""
         key = lesson.name, at
-        if key not in self._computed:
+
+        def compute() -> None:
             self._computed[key] = computed_truth(lesson, at)
+
+        if key not in self._computed:
+            self._computed[key] = None
+            self._submit(compute)
         return self._computed[key]
 
 

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from onpath.app.classroom.classroom import Classroom
+from onpath.lessons.pace import Pace
 from onpath.lessons.progress import Answer, Progress
 from onpath.lessons.words import Words
 
@@ -19,12 +20,24 @@ class TeacherChoices:
         message: the outcome of deleting a student.
         picked: numbers of the sketches to show; empty for all.
         numbered: sketches in order of arrival, by lesson, step and round; `picked` counts them.
+        pace: the steps that are chosen, whether or not the class is kept within them; None before.
+        pair: which of `PAIRS` of gains are the axes.
+        route: the route that is chosen; empty for the first one.
+        setup: the share code that was sent last.
+        told: the outcome of the last order.
+        refused: why the last value of a field was refused, by field.
     """
 
     followed: str = ""
     message: str = ""
     picked: tuple[int, ...] = ()
     numbered: dict[tuple[str, int, bool], list[Answer]] = field(default_factory=dict)
+    pace: Pace | None = None
+    pair: int = 0
+    route: str = ""
+    setup: str = ""
+    told: str = ""
+    refused: dict[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +45,7 @@ class TeacherContext:
     """The context of one teacher's page.
 
     Attributes:
+        may_lead: whether the page is still a teacher's.
         address: where students join the class.
         is_local: whether only this machine can open it.
         progress: the teacher's own progress through the lessons.
@@ -45,6 +59,7 @@ class TeacherContext:
 
     classroom: Classroom
     chosen: TeacherChoices
+    may_lead: Callable[[], bool]
     address: str
     is_local: bool
     progress: Callable[[], Progress]

@@ -186,6 +186,14 @@ export interface MakeFile {
     with_code?: boolean
 }
 
+/** An order of a teacher to the class; refused from any other page. */
+export interface Lead {
+    is: "lead"
+    do: "ask_again" | "back" | "delete" | "end" | "end_standing" | "forget" | "freeze" | "keep" | "let_go" | "next" | "own_lab" | "play" | "put_back" | "record" | "remove" | "send_route" | "send_setup" | "send_step" | "stop" | "thaw"
+    /** number of the student whom it concerns. */
+    member?: number
+}
+
 /** Tell what a sheet shows; the answer's `is` is its name. */
 export interface Ask {
     is: "ask"
@@ -321,6 +329,7 @@ export type PageMessage =
     | SendPart
     | DropFile
     | MakeFile
+    | Lead
     | Ask
     | Freehand
     | Prefer

@@ -21,6 +21,13 @@ export function svg<T extends keyof SVGElementTagNameMap>(
     return element
 }
 
+/** The elements of our own server's HTML, whose templates escape whatever users have typed. */
+export function elementsOf(html: string): DocumentFragment {
+    const template = document.createElement("template")
+    template.innerHTML = html // oxlint-disable-line no-restricted-properties
+    return template.content
+}
+
 /** A checkbox that looks like a switch, and is called one. */
 export function switchInput(properties: { id?: string; title?: string; checked?: boolean } = {}): HTMLInputElement {
     const input = Object.assign(made("input", "switch"), { type: "checkbox", ...properties })

@@ -74,7 +74,7 @@ export interface FormGroup {
 /** All fields of a place; without groups, there is no such place now. */
 export interface FormMessage {
     is: "form"
-    place: "figure" | "lab" | "step"
+    place: "class" | "figure" | "lab" | "step"
     groups: FormGroup[]
 }
 

@@ -7,8 +7,9 @@ import type { FormMessage } from "../core/form_data"
 import { retone } from "../core/ink"
 import { said, significant, written, type Texts } from "../core/words"
 import { RemoteEngine } from "../channel/channel"
-import type { Command } from "../channel/messages"
+import type { Command, PageMessage } from "../channel/messages"
 import { Connection } from "../channel/connection"
+import { ClassPanel } from "../parts/class_panel"
 import { Column } from "../parts/column"
 import { Downloads } from "../parts/downloads"
 import type { FormHost } from "../parts/fields"
@@ -16,6 +17,7 @@ import { Form } from "../parts/form"
 import { Lens } from "../parts/lens"
 import { keptLook } from "../parts/look"
 import { OverStage } from "../parts/over_stage"
+import { ask } from "../parts/question"
 import { Strip } from "../parts/strip"
 import { Sketch } from "../parts/sketch"
 import { SymbolOverlay } from "../parts/symbol_overlay"
@@ -50,6 +52,7 @@ class Face {
     private readonly column: Column
     private readonly voice: Voice
     private readonly shell: Shell | null
+    private klass: ClassPanel | null = null
     private canvas: HTMLElement | null = null
     private width = 0 // of the canvas, [px]
     private height = 0
@@ -124,7 +127,11 @@ class Face {
         const host: FormHost = {
             texts, value: settings.value, refused: settings.refused, waits: settings.waits,
             set: (name, value) => settings.set(name, value),
-            act: ({ name, act }) => (act ? engine.send(act as Command) : shell.go(name)),
+            act: ({ name, label, act, asks }) => {
+                const send = () => (act ? engine.send(act as Command | PageMessage) : shell.go(name))
+                if (asks) ask(texts, label, asks, send)
+                else send()
+            },
         }
         for (const [place, data] of engine.forms) {
             const form = forms.get(place)
@@ -136,9 +143,19 @@ class Face {
             shell.form = lab
             shell.panel.fill(lab.element)
         }
+        this.showClass()
         if (!step) return
         if (!engine.forms.get("step")!.groups.length) step.element.remove()
         else if (!step.element.isConnected) column.offer(step.element) // once: what is moved loses the focus
+    }
+
+    /** Show a teacher the class in the place of lessons. */
+    private showClass(): void {
+        const { engine, texts, forms, column } = this, data = engine.forms.get("class")
+        if (!data?.groups.length) return column.lend(null)
+        this.klass ??= new ClassPanel(texts, forms.get("class")!)
+        this.klass.show(data, engine.lab!.presenting)
+        column.lend(this.klass.element)
     }
 
     /** Remove it; returns what was open. */
@@ -205,6 +222,7 @@ class Face {
         this.undo.hidden = !engine.lab!.undo
         transport.element.classList.toggle("looks", !engine.lab!.own)
         this.enlarge(engine.lab!.presenting)
+        if (this.klass) this.showClass()
         this.read = 0
     }
 

@@ -1,7 +1,7 @@
 // The column of a lesson in the lab: the open step as its server tells it, beside the robots and above the strip.
 
 import type { Action, Command, LessonMessage, MeasuredMessage, PageMessage } from "../channel/messages"
-import { isTyped, made } from "../core/dom"
+import { elementsOf, isTyped, made } from "../core/dom"
 import { keepScroll } from "../core/drafts"
 import type { Answer, BlockData, PageData, TaskData } from "../core/lesson_data"
 import { said, type Texts } from "../core/words"
@@ -65,6 +65,7 @@ export class Column implements Robots {
     private place = "" // symbols that mean something on this robot, lesson and step
     private view: StepView | null = null
     private tasks: Task[] = []
+    private lent: HTMLElement | null = null
     private turned = false // whether a key has turned the page
 
     constructor(texts: Texts, private readonly engine: RemoteEngine, private readonly isWide: () => boolean,
@@ -85,7 +86,8 @@ export class Column implements Robots {
 
     /** Whether the open step has the main thing to press now. */
     get leads(): boolean { return this.open && (this.view?.leads ?? false) }
-    get open(): boolean { return !this.element.hidden }
+    /** Whether a lesson is in it. */
+    get open(): boolean { return !this.element.hidden && !this.lent }
     get ready(): boolean { return this.engine.connected }
 
     play(): void {
@@ -97,11 +99,28 @@ export class Column implements Robots {
         if (data.kind === "text") this.engine.send({ do: "Act", actions: data.links[link] as Action[] })
     }
 
+    /** Show something else in its place, such as a teacher's class; null: nothing else. */
+    lend(element: HTMLElement | null): void {
+        if (element === this.lent) return
+        this.lent?.remove()
+        this.lent = element
+        if (element) {
+            this.leave("")
+            this.element.append(element)
+        }
+        this.reveal(element !== null)
+    }
+
+    private reveal(on: boolean): void {
+        this.element.hidden = !on
+        document.documentElement.classList.toggle("op-lesson", on)
+    }
+
     /** Show the open step, or what has changed in it. */
     hear(message: LessonMessage): void {
         const { page, student, element } = this
-        element.hidden = !message.lesson
-        document.documentElement.classList.toggle("op-lesson", this.open)
+        if (this.lent) return
+        this.reveal(message.lesson !== "")
         element.dataset["version"] = String(message.version)
         document.documentElement.classList.remove("op-waits")
         if (!this.open) return this.leave("")
@@ -269,13 +288,6 @@ export class Column implements Robots {
         this.turned = true
         this.engine.send({ do: "GoToStep", by })
     }
-}
-
-/** The elements of our own server's HTML. */
-function elementsOf(html: string): DocumentFragment {
-    const template = document.createElement("template")
-    template.innerHTML = html // oxlint-disable-line no-restricted-properties
-    return template.content
 }
 
 /** Put HTML into an element unless it is there; a focused button is replaced by its successor. */

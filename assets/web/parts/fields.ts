@@ -1,6 +1,6 @@
 // The rows of a form: a setting each, or a button, or a note. While a hand is on a row, it shows what the hand wants.
 
-import { made, refuse, svg, switchInput, tell } from "../core/dom"
+import { elementsOf, made, refuse, svg, switchInput, tell } from "../core/dom"
 import { draftOf, keepDraft } from "../core/drafts"
 import type { FormField, FormOption } from "../core/form_data"
 import { Scale, typedNumber } from "../core/scales"
@@ -482,7 +482,7 @@ class ButtonRow extends FieldRow {
         if (field.picture) button.replaceChildren(Object.assign(made("img", ""), { src: field.picture, alt: "" }), made("b", "", field.label), icon("right"))
         else tell(button, field.label)
         this.element.title = field.help ?? ""
-        button.classList.toggle("main", field.tone === "main")
+        for (const tone of ["main", "warning"]) button.classList.toggle(tone, field.tone === tone)
         button.classList.toggle("pictured", Boolean(field.picture))
         describe(button, field.help)
     }
@@ -607,6 +607,22 @@ class PoleRow extends FieldRow {
     }
 }
 
+/** What the server shows, such as a table. */
+class HtmlRow extends FieldRow {
+    private shown = ""
+    protected readonly inputs: HTMLElement[] = []
+
+    words(): string { return "" }
+
+    protected name(): void {}
+
+    protected show(value: Value): void {
+        if (value === this.shown) return
+        this.shown = String(value)
+        this.element.replaceChildren(elementsOf(this.shown))
+    }
+}
+
 function scaleOf({ low = 0, high = 0, step = 1, factor = 1, scale }: FormField): Scale {
     return new Scale({ low: low * factor, high: high * factor, step: step * factor, scale })
 }
@@ -621,6 +637,7 @@ const KINDS = {
     text: TextRow,
     note: NoteRow,
     poles: PoleRow,
+    html: HtmlRow,
 }
 
 /** Which row a field has. */

@@ -82,6 +82,9 @@ export class Form implements RowForm {
     /** A hand has changed a value. */
     readonly changed = (): void => this.update()
 
+    /** The element of a group. */
+    part(name: string): HTMLElement | undefined { return this.groups.get(name)?.element }
+
     /** The row of a field. */
     readonly row = (name: string): FieldRow | undefined => this.rows.get(name)
 

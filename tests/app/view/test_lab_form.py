@@ -111,8 +111,9 @@ def test_a_page_hears_of_a_value_when_it_counts_and_of_what_has_changed() -> Non
 
     form.hear(AskForm(), True)
     first = news()
-    assert [type(each) for each in first] == [FormMessage, FormMessage, ValuesMessage]
-    assert [each.place for each in first[:2]] == ["lab", "step"] and first[1].groups == ()
+    assert [type(each) for each in first] == [*[FormMessage] * 3, ValuesMessage]
+    assert [each.place for each in first[:3]] == ["lab", "step", "class"]
+    assert first[1].groups == first[2].groups == ()
     assert news() == []
     form.hear(SetField("K1", 905.0, 7), True)
     assert news() == []  # it does not count yet

@@ -1,0 +1,42 @@
+"""What a teacher's page says to its class, besides `SetField` with the names of its fields."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from msgspec import Meta, Struct
+
+Order = Literal[
+    "freeze",
+    "thaw",
+    "send_setup",
+    "stop",
+    "own_lab",
+    "back",
+    "next",
+    "ask_again",
+    "play",
+    "put_back",
+    "send_step",
+    "send_route",
+    "remove",
+    "delete",
+    "end_standing",
+    "keep",
+    "let_go",
+    "record",
+    "end",
+    "forget",
+]
+"""What a button of the teacher's page does; see `TeacherOrders`."""
+
+
+class Lead(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="lead"):
+    """An order of a teacher to the class; refused from any other page.
+
+    Attributes:
+        member: number of the student whom it concerns.
+    """
+
+    do: Order
+    member: Annotated[int, Meta(ge=0)] = 0

@@ -1,0 +1,70 @@
+// The class on a teacher's page: tabs with a group of its form each, and the first group, which is always seen.
+
+import { made, tell } from "../core/dom"
+import type { FormMessage } from "../core/form_data"
+import { said, type Texts } from "../core/words"
+import type { Form } from "./form"
+import { pressed } from "./sheet"
+
+export class ClassPanel {
+    readonly element: HTMLElement
+    private readonly tabs = made("div", "tabs")
+    private readonly buttons = new Map<string, HTMLButtonElement>()
+    private chosen = ""
+    private large: boolean | null = null
+
+    constructor(texts: Texts, private readonly form: Form) {
+        this.tabs.role = "tablist"
+        this.tabs.ariaLabel = said(texts, "class.title")
+        this.tabs.addEventListener("keydown", event => this.turn(event))
+        this.element = made("section", "class", this.tabs, form.element)
+        this.element.ariaLabel = said(texts, "class.title")
+    }
+
+    /** Show the groups; for a projector, one without nicknames comes first. */
+    show({ groups }: FormMessage, large: boolean): void {
+        const { form, buttons, tabs } = this, [, ...others] = groups
+        for (const { name, title } of others) {
+            const button = buttons.get(name) ?? pressed("", title, () => this.choose(name))
+            if (!buttons.has(name)) {
+                button.role = "tab"
+                button.id = `op-tab-${name}`
+                buttons.set(name, button)
+                tabs.append(button)
+            }
+            tell(button, title)
+            const part = form.part(name)!
+            part.id = `op-tab-${name}-panel`
+            part.role = "tabpanel"
+            part.setAttribute("aria-labelledby", button.id)
+            button.setAttribute("aria-controls", part.id)
+        }
+        const told = form.row("class.told")
+        if (told) told.element.role = "status"
+        if (large !== this.large) this.chosen = others[large ? 1 : 0]!.name
+        this.large = large
+        this.choose(this.chosen)
+    }
+
+    private choose(name: string): void {
+        this.chosen = name
+        for (const [each, button] of this.buttons) {
+            const isChosen = each === name
+            button.ariaSelected = String(isChosen)
+            button.tabIndex = isChosen ? 0 : -1
+            const part = this.form.part(each)
+            if (part) part.hidden = !isChosen
+        }
+    }
+
+    /** The keys of a list of tabs. */
+    private turn(event: KeyboardEvent): void {
+        const names = [...this.buttons.keys()], at = names.indexOf(this.chosen), last = names.length - 1
+        const to = { ArrowLeft: at ? at - 1 : last, ArrowRight: at < last ? at + 1 : 0, Home: 0, End: last }[event.key]
+        if (to === undefined) return
+        event.preventDefault()
+        event.stopPropagation()
+        this.choose(names[to]!)
+        this.buttons.get(names[to]!)!.focus()
+    }
+}

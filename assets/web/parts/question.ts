@@ -1,0 +1,17 @@
+// A question before something that cannot be undone.
+
+import { made } from "../core/dom"
+import { said, type Texts } from "../core/words"
+import { pressed, SheetDialog } from "./sheet"
+
+/** Do something once the user has said yes. */
+export function ask(texts: Texts, title: string, question: string, act: () => void): void {
+    const sheet = new SheetDialog(texts, "question", title)
+    const no = pressed("", said(texts, "class.no"), () => sheet.close())
+    const yes = pressed("warning", said(texts, "class.yes"), () => {
+        sheet.close()
+        act()
+    })
+    sheet.body.append(made("p", "", question), made("div", "row", no, yes))
+    sheet.open(no)
+}
