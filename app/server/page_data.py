@@ -94,10 +94,10 @@ class PageData:
         self._thread = WorkThread("page")
         teaching = context.teaching
         self._form = PageForm(own.post, self._thread.submit, teaches=teaching is not None)
-        self._class: PageClass | None = None
+        self._taught: PageClass | None = None
         if teaching is not None:
             delivery = self._files.delivery
-            self._class = PageClass(teaching, context.course, own.post, delivery)
+            self._taught = PageClass(teaching, context.course, own.post, delivery)
         self._is_resized = self._skips = False
         self._requests, self._answers = deque[Request](), deque[Struct](maxlen=MOST_REQUESTS)
         self._lesson = self._measured = b""
@@ -112,8 +112,8 @@ class PageData:
         self._files.close()
         self._thread.close()
         self._text.close()
-        if self._class is not None:
-            self._class.close()
+        if self._taught is not None:
+            self._taught.close()
 
     def follow(
         self,
@@ -135,8 +135,8 @@ class PageData:
             self._opened = stream.opened
             self._files.restart()
             self._form.restart()
-            if self._class is not None:
-                self._class.restart()
+            if self._taught is not None:
+                self._taught.restart()
             self._source.forget()
             self._path, self._state, self._class, self._language = None, None, None, ""
             self._lesson = self._measured = b""
@@ -199,11 +199,7 @@ class PageData:
             self._class = seat
             messages.append(partial(encoded, seat))
         messages += self._of_lesson()
-        if self._form.is_asked:
-            news = self._form.news(snapshot, page, self._context.course, text.words)
-            messages += [partial(encoded, each) for each in news]
-            if self._class is not None:
-                messages += [partial(encoded, each) for each in self._class.news()]
+        messages += self._of_forms(snapshot, page)
         while self._answers:
             messages.append(partial(encoded, self._answers.popleft()))
         if messages:
@@ -219,6 +215,15 @@ class PageData:
             days=context.keep_days,
             privacy=context.privacy_url,
         )
+
+    def _of_forms(self, snapshot: PageSnapshot, page: Page | None) -> list[Message]:
+        """What the page is told of its fields, once it has asked for them."""
+        if not self._form.is_asked:
+            return []
+        news = [*self._form.news(snapshot, page, self._context.course, self._text.words)]
+        if self._taught is not None:
+            news += self._taught.news()
+        return [partial(encoded, each) for each in news]
 
     def _of_lesson(self) -> list[Message]:
         column, messages = self._text.column, list[Message]()
@@ -303,7 +308,7 @@ class PageData:
 
     def _hear_teacher(self, message: Lead | SetField) -> bytes:
         """Take an order to the class; returns why not, if the page may give none."""
-        if self._class is None or not self._class.hear(message):
+        if self._taught is None or not self._taught.hear(message):
             return encoded(Refused("only a teacher of the class may do this"))
         return b""
 
