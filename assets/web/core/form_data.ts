@@ -18,10 +18,11 @@ export interface FormNeed {
 }
 
 /** A row of a form. Its value is told by its name; a note's is what it says. The value of `poles` has a line for each pole:
- * its channel, its real and its imaginary part, [1/s]. */
+ * its channel, its real and its imaginary part, [1/s]; that of "html" comes from a template that escapes what users have
+ * typed. */
 export interface FormField {
     name: string
-    kind: "button" | "choice" | "note" | "number" | "poles" | "switch" | "text"
+    kind: "button" | "choice" | "html" | "note" | "number" | "poles" | "switch" | "text"
     label: string
     symbol?: string
     unit?: string
@@ -49,6 +50,8 @@ export interface FormField {
     mark?: number | string | boolean | null
     /** the command that a button sends. */
     act?: Record<string, unknown> | null
+    /** the question that it asks before it does. */
+    asks?: string
     /** of a note or a button: "main", "warning" or none; of a note also the side whose colour it has, "of_left" or "of_right",
      * or "ranks", below the colours of the rank test's map. */
     tone?: string
