@@ -174,7 +174,7 @@ class Checking(Pupil):
 def test_a_lesson_is_done_from_its_first_page_to_its_end_by_mouse(tab: Tab, name: str) -> None:
     front = COURSE.lesson(name, "en").front
     pupil = Checking(tab, right=LESSONS.index(name) % 2 == 0)
-    pupil.open(f"Open lesson {NUMBERS[name]}: {front.title}", name)
+    pupil.open(f"{NUMBERS[name]}. {front.title}", name)
     seen = [step.title for step in pupil.steps()]
     run, lesson = tab.lab.lessons, pupil.lesson
     assert seen == [step.title for step in lesson.steps if not step.when or step.title in seen]

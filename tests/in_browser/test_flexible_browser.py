@@ -42,8 +42,7 @@ def tab(browser: Browser, server: LabServer) -> Iterator[Tab]:
 def choose_robot(tab: Tab, robot: str) -> None:
     """Choose a robot from all of them."""
     tab.page.locator("#op-panel [data-name=robot] button").click()
-    dialog = tab.page.get_by_role("dialog")
-    dialog.get_by_role("button").filter(has_text=robot).click()
+    tab.card(robot).click()
     tab.wait_until_built()
 
 

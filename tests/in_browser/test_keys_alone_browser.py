@@ -83,7 +83,8 @@ def test_lesson_1_is_done_by_keys_alone(browser: Browser, server: LabServer, sch
     lessons = tab.lab.lessons
 
     pupil.act("Lessons")
-    pupil.act("Open lesson 1: Path or timetable?")
+    pupil.reach(tab.card("1. Path or timetable?"))
+    pupil.press("Enter")
     pupil.arrive(0)
     pupil.press("h")
     wait_for(lambda: len(tab.simulation.forces.held) == 2)

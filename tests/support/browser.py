@@ -428,6 +428,10 @@ class Tab:
         box.press("Enter")
         self.blur()
 
+    def card(self, label: str) -> Locator:
+        """Return what chooses something on an open sheet, such as a lesson or a robot."""
+        return self.page.get_by_role("dialog").get_by_role("button").filter(has_text=label)
+
     def teach(self, key: str) -> None:
         """Ask for the teacher's page with a key."""
         self.button("Language, display").click()

@@ -79,7 +79,7 @@ class Pupil:
     def open(self, label: str, name: str) -> None:
         """Open a lesson from the list of lessons."""
         self.tab.press("Lessons")
-        self.tab.button(label).click()
+        self.tab.card(label).click()
         run = self.tab.lab.lessons
         wait_for(lambda: run.lesson is not None and run.lesson.name == name)
 
