@@ -21,7 +21,7 @@ import pytest
 from onpath.app.storage.database_url import DATABASE
 from tests.support.checkout import ROOT
 from tests.support.lab_process import LabProcess, free_ports
-from tests.support.teacher_tab import TeacherTab
+from tests.support.student import Student
 from tests.support.waiting import wait_for
 
 HOST, ORIGIN = "lab.example.org", "https://lab.example.org"
@@ -42,9 +42,9 @@ class Site:
         connection.request("GET", path, headers={"Host": host, **headers})
         return connection.getresponse()
 
-    def student(self, prefix: str, origin: str = ORIGIN) -> TeacherTab:
+    def student(self, prefix: str, origin: str = ORIGIN) -> Student:
         """A browser under a prefix, "c/CODE" or "l/NAME"."""
-        return TeacherTab(f"ws://{HOST}/{prefix}", self.port, Origin=origin)
+        return Student(f"ws://{HOST}/{prefix}", self.port, Origin=origin)
 
     def serving(self) -> LabProcess:
         """The process that has connections; there must be one only."""

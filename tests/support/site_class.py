@@ -15,7 +15,7 @@ from onpath.app.storage.records import Records
 from onpath.app.storage.schema import classes
 from tests.support.lab_process import LabProcess
 from tests.support.site import Site
-from tests.support.teacher_tab import TeacherTab
+from tests.support.student import Student
 from tests.support.waiting import wait_for
 
 RECONNECTION = 0.5  # [s] between the tries of a page that has lost its server, about
@@ -72,7 +72,7 @@ class Class:
         self.all = [stack.enter_context(running.site.student(self.prefix)) for _ in range(3)]
         self.teacher, self.ada, self.bob = self.all
         self.names = {self.ada: "Ada", self.bob: "Bob"}
-        self.open: list[TeacherTab] = []
+        self.open: list[Student] = []
 
     def until(self, condition: Callable[[], Any]) -> None:
         """Wait for something while all read what they are sent, and connect again when cut off."""
@@ -100,9 +100,8 @@ class Class:
 
     def teacher_sees_both(self) -> bool:
         """Whether the teacher's page has both students, and they are there."""
-        teacher = self.teacher
-        both = teacher.has_widget("1. Ada") and teacher.has_widget("2. Bob")
-        return both and not teacher.sees(">away<")
+        table = self.teacher.values.get("class.table", "")
+        return "Ada" in table and "Bob" in table and ">away<" not in table
 
     def come_back(self) -> None:
         """Everybody, as their pages do by themselves."""

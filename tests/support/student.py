@@ -174,8 +174,9 @@ class Student:
 
     @property
     def fields(self) -> dict[str, dict[str, Any]]:
-        """The fields of the form of the lab, by name."""
-        groups = self.told.get("form lab", {}).get("groups", ())
+        """The fields of the forms of the lab and of a teacher's class, by name."""
+        forms = [self.told.get(f"form {place}", {}) for place in ("lab", "class")]
+        groups = [group for form in forms for group in form.get("groups", ())]
         return {field["name"]: field for group in groups for field in group["fields"]}
 
     @property
@@ -265,6 +266,16 @@ class Student:
     def teach(self, key: str) -> dict[str, Any]:
         """Ask for the teacher's page with a key; returns why not and the like, or nothing."""
         return self._sit({"is": "teach", "key": key})
+
+    @property
+    def teaches(self) -> bool:
+        """Whether the page shows the class."""
+        return "class.table" in self.values
+
+    def lead(self, order: str) -> None:
+        """Give an order to the class; see `Order`."""
+        self.read(lambda: f"class.{order}" in self.fields)
+        self.tell(self.fields[f"class.{order}"]["act"])
 
     def _sit(self, request: dict[str, Any]) -> dict[str, Any]:
         self.read(lambda: self.seat)

@@ -21,8 +21,7 @@ from onpath.app.storage.records import Records
 from onpath.app.storage.schema import classes
 from tests.support.lab_process import LabProcess, free_ports
 from tests.support.site_class import CODES, KEYS
-from tests.support.student import PATIENCE
-from tests.support.teacher_tab import TeacherTab
+from tests.support.student import PATIENCE, Student
 from tests.support.waiting import wait_for
 
 pytestmark = pytest.mark.thorough
@@ -48,11 +47,11 @@ def two(url: str) -> Iterator[list[LabProcess]]:
         process.kill()
 
 
-def at(process: LabProcess, path: str) -> TeacherTab:
-    return TeacherTab(f"ws://127.0.0.1:{process.port}{path}")
+def at(process: LabProcess, path: str) -> Student:
+    return Student(f"ws://127.0.0.1:{process.port}{path}")
 
 
-def move(students: list[TeacherTab], there: LabProcess) -> None:
+def move(students: list[Student], there: LabProcess) -> None:
     """Their connections are closed, and they connect to another process, as through a proxy."""
     codes = [student.code for student in students]
     for student in students:
@@ -65,7 +64,7 @@ def move(students: list[TeacherTab], there: LabProcess) -> None:
         assert student.code == code
 
 
-def join(process: LabProcess, name: str) -> TeacherTab:
+def join(process: LabProcess, name: str) -> Student:
     student = at(process, f"/c/{CODE}")
     student.reopen()
     student.join(name)
@@ -73,7 +72,7 @@ def join(process: LabProcess, name: str) -> TeacherTab:
     return student
 
 
-def wait_until_stored(url: str, student: TeacherTab) -> None:
+def wait_until_stored(url: str, student: Student) -> None:
     """Wait until a member and the member's lab would outlive the process."""
     records = Records(url)
     room = class_id_of(KEYS[0])

@@ -14,7 +14,7 @@ from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
 from onpath.app.server.server_options import ServerOptions
 from onpath.app.storage.records import Records, file_url
-from tests.support.teacher_tab import TeacherTab
+from tests.support.student import Student
 from tests.support.waiting import wait_for
 
 KEYS = ["k7mf2xqa9tzr", "bn4ws8cd3vyp"]
@@ -36,10 +36,10 @@ def server(file: Path) -> Iterator[LabServer]:
     made.stop()
 
 
-def come(server: LabServer, index: int, name: str) -> TeacherTab:
+def come(server: LabServer, index: int, name: str) -> Student:
     """A student of a class, with a lab that is stored."""
     code = open_classes(KEYS)[index].code
-    student = TeacherTab(f"ws://127.0.0.1:{server.server.get_port()}/c/{code}")
+    student = Student(f"ws://127.0.0.1:{server.server.get_port()}/c/{code}")
     student.open()
     student.join(name)
     student.read(lambda: student.is_member)
@@ -47,9 +47,9 @@ def come(server: LabServer, index: int, name: str) -> TeacherTab:
     return student
 
 
-def teach(server: LabServer) -> TeacherTab:
+def teach(server: LabServer) -> Student:
     code = open_classes(KEYS)[0].code
-    teacher = TeacherTab(f"ws://127.0.0.1:{server.server.get_port()}/c/{code}")
+    teacher = Student(f"ws://127.0.0.1:{server.server.get_port()}/c/{code}")
     teacher.open()
     teacher.teach(shown(KEYS[0]))
     return teacher
@@ -66,7 +66,7 @@ def stored(file: Path) -> str:
     return found
 
 
-def gone(student: TeacherTab) -> bool:
+def gone(student: Student) -> bool:
     """Whether the server has closed the connection."""
     try:
         student.read_what_has_come()
@@ -92,13 +92,12 @@ def test_a_teacher_deletes_one_student_and_then_the_own_class_and_nobody_else(
 
     until(lambda: all(stored(file).count(each.code) > 1 for each in everybody))
     until(lambda: "Ada" in stored(file) and "Bobby" in stored(file))
-    teacher.change("Follow", teacher.find("1. Ada")["options"][1])
-    until(lambda: teacher.sees("This is the lab of"))  # the page has been rebuilt
-    teacher.change("Delete this student")
-    until(lambda: teacher.sees("Delete Ada from the class"))
-    teacher.change("Yes")
-    until(lambda: teacher.sees("Deleted."))
-    until(lambda: not teacher.sees("This is the lab of") and teacher.has_widget("Send my set-up"))
+    teacher.set("class.follow", 1)
+    until(lambda: "Ada" in teacher.values["class.who"])
+    assert "Delete Ada from the class" in teacher.fields["class.delete"]["asks"]
+    teacher.lead("delete")
+    until(lambda: teacher.values["class.told"] == "Deleted.")
+    until(lambda: not teacher.values["class.who"])
     until(lambda: gone(ada))
     left = stored(file)
     assert "Ada" not in left and ada.code not in left
@@ -107,14 +106,14 @@ def test_a_teacher_deletes_one_student_and_then_the_own_class_and_nobody_else(
     ada.reopen()
     ada.read(lambda: ada.may_join and ada.code != before)
     ada.close()
-    teacher.change("Delete the class and its labs")
-    until(lambda: teacher.sees("Delete the labs of all students of this class"))
-    teacher.change("Yes")
+    question = teacher.fields["class.forget"]["asks"]
+    assert "Delete the labs of all students of this class" in question
+    teacher.lead("forget")
 
     def bob_is_gone() -> bool:
         teacher.read_what_has_come()
         eve.read_what_has_come()
-        return gone(bob) and teacher.sees("1 lab was deleted")
+        return gone(bob) and "1 lab was deleted" in teacher.values["class.told"]
 
     wait_for(bob_is_gone, 60.0)
     left = stored(file)
@@ -125,9 +124,7 @@ def test_a_teacher_deletes_one_student_and_then_the_own_class_and_nobody_else(
 
 
 def test_who_is_asked_for_a_nickname_is_told_what_is_stored(server: LabServer) -> None:
-    student = TeacherTab(
-        f"ws://127.0.0.1:{server.server.get_port()}/c/{open_classes(KEYS)[0].code}"
-    )
+    student = Student(f"ws://127.0.0.1:{server.server.get_port()}/c/{open_classes(KEYS)[0].code}")
     student.open()
     student.read(lambda: student.may_join)
     assert "predictions and drawn curves" in student.seat["stored"]

@@ -15,7 +15,7 @@ import pytest
 from onpath.app.classroom.class_state import SETTLED
 from tests.support.site import needs_nginx
 from tests.support.site_class import KEYS, Class, Running, quiet, return_to
-from tests.support.teacher_tab import TeacherTab
+from tests.support.student import Student
 
 pytestmark = [pytest.mark.thorough, needs_nginx]
 
@@ -38,7 +38,7 @@ def come_in(running: Running, key: str) -> Iterator[Class]:
         return_to(ended, running, klass.prefix)
 
 
-def move(klass: Class, who: TeacherTab, seconds: float) -> dict[float, float]:
+def move(klass: Class, who: Student, seconds: float) -> dict[float, float]:
     """Let somebody move a slider.
 
     Returns:
@@ -55,7 +55,7 @@ def move(klass: Class, who: TeacherTab, seconds: float) -> dict[float, float]:
     return sent
 
 
-def lose_the_process(klass: Class, who: TeacherTab, seconds: float = LOST) -> None:
+def lose_the_process(klass: Class, who: Student, seconds: float = LOST) -> None:
     """The process is killed when somebody moves a slider; all come back on the other one.
 
     Args:
@@ -80,7 +80,7 @@ def lose_the_process(klass: Class, who: TeacherTab, seconds: float = LOST) -> No
 
 def choose_the_step(klass: Class) -> None:
     """The teacher looks at the step that asks for a prediction, of the first lesson."""
-    klass.teacher.change("Step", klass.teacher.find("Step")["options"][CHOICE])
+    klass.teacher.set("class.step", CHOICE)
 
 
 def stopped(klass: Class) -> list[bool]:
@@ -94,25 +94,25 @@ def test_what_students_did_5_s_before_a_kill_is_in_the_class_which_is_back_withi
     with come_in(running, KEYS[0]) as klass:
         ada, teacher, until = klass.ada, klass.teacher, klass.until
         choose_the_step(klass)
-        teacher.change("Open this step for all")
+        teacher.lead("send_step")
         until(lambda: all(each.sees(f"Step {CHOICE + 1} of") for each in klass.names))
         ada.tell({"do": "Predict", "option": 0})
-        until(lambda: teacher.sees(ANSWERED))
+        until(lambda: ANSWERED in teacher.values.get("class.answers", ""))
         ada.press("Free lab")
         until(lambda: not ada.sees(f"Step {CHOICE + 1} of"))
         lose_the_process(klass, ada, LOST + SETTLED)  # by then the step is known to be given her
         choose_the_step(klass)
-        until(lambda: teacher.sees(ANSWERED))
-        until(lambda: teacher.sees("Students who join are taken to the step that you opened last"))
+        until(lambda: ANSWERED in teacher.values.get("class.answers", ""))
+        until(lambda: f"step {CHOICE + 1}" in teacher.values["class.standing"])
         until(lambda: klass.bob.sees(f"Step {CHOICE + 1} of"))
         assert not ada.sees(f"Step {CHOICE + 1} of")  # the step is not opened for her once more
 
 
 def test_what_the_teacher_ordered_5_s_before_a_kill_still_holds(running: Running) -> None:
     with come_in(running, KEYS[1]) as klass:
-        klass.teacher.change("Freeze all labs")
+        klass.teacher.lead("freeze")
         klass.until(lambda: stopped(klass) == [True, True])
         lose_the_process(klass, klass.teacher)  # whose own lab is not stopped
         klass.until(lambda: stopped(klass) == [True, True])
-        klass.teacher.change("Let all labs go on")
+        klass.teacher.lead("thaw")
         klass.until(lambda: stopped(klass) == [False, False])

@@ -18,7 +18,6 @@ from onpath.assets.messages import languages, preferred
 from onpath.lessons.words import ENGLISH, Words
 from tests.support.lab import loop_cache
 from tests.support.student import Student
-from tests.support.teacher_tab import TeacherTab
 
 HEADERS = {
     "": "en",
@@ -68,20 +67,22 @@ def test_the_teachers_page_follows_the_teachers_language_whoever_is_shown() -> N
     room, german = Classroom(), Words("de")
     server = LabServer("127.0.0.1", 0, loop_cache(), ServerOptions(classrooms=[room]))
     address = f"ws://127.0.0.1:{server.server.get_port()}/c/{room.code}"
-    with TeacherTab(address) as student, TeacherTab(address) as teacher:
+    with Student(address) as student, Student(address) as teacher:
         student.open()
         student.join("Ada")
         student.read(lambda: student.is_member)
         teacher.open()
         teacher.teach(shown(room.key))
-        teacher.read(lambda: teacher.has_widget("Freeze all labs") and teacher.code)
+        teacher.read(lambda: "class.freeze" in teacher.fields)
         own = server.registry.find(teacher.code)
         assert own is not None
         own.scheduled.lab.post(SetLanguage("de"))
-        teacher.read(lambda: teacher.has_widget(german("class.freeze")))
-        teacher.change(german("class.follow"), "1. Ada")
-        teacher.read(lambda: teacher.sees(german("class.following", name="Ada")))
-        assert teacher.has_widget(german("class.freeze"))
+        label = german("class.freeze")
+        teacher.read(lambda: teacher.fields["class.freeze"]["label"] == label)
+        teacher.set("class.follow", 1)
+        following = german("class.following", name="Ada")
+        teacher.read(lambda: teacher.values["class.who"] == following)
+        assert teacher.fields["class.freeze"]["label"] == label
     server.stop()
 
 

@@ -10,7 +10,7 @@ from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
 from onpath.app.server.server_options import ServerOptions
 from onpath.lessons.pace import Pace
-from tests.support.teacher_tab import TeacherTab
+from tests.support.student import Student
 
 LESSON = "01-path-or-timetable"
 
@@ -31,10 +31,10 @@ def test_the_class_goes_on_and_its_teacher_is_let_in(pace: Pace, is_kept: bool) 
     server = LabServer("127.0.0.1", 0, LoopCache(), ServerOptions(classrooms=[room]))
     try:
         address = f"ws://127.0.0.1:{server.server.get_port()}/c/{room.code}"
-        with TeacherTab(address) as teacher:
+        with Student(address) as teacher:
             teacher.open()
             teacher.teach(shown(room.key))
-            teacher.read(lambda: teacher.has_widget("Freeze all labs"))
+            teacher.read(lambda: teacher.teaches)
         assert room.orders.pace == (pace if is_kept else None)
     finally:
         server.stop()

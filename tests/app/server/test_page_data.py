@@ -26,7 +26,6 @@ from tests.bench.simulated_browser import SEES
 from tests.support import waiting
 from tests.support.own_socket import feeds
 from tests.support.student import Student
-from tests.support.teacher_tab import TeacherTab
 
 WAIT = 30.0
 wait_for = partial(waiting.wait_for, seconds=WAIT)
@@ -272,21 +271,17 @@ def test_a_teacher_is_told_of_the_lab_that_is_shown_and_cannot_act_on_it(
     address: str, room: Classroom
 ) -> None:
     address = f"{address}/c/{room.code}"
-    with TeacherTab(address) as ada, TeacherTab(address) as teacher:
+    with Student(address) as ada, Student(address) as teacher:
         ada.open()
         ada.join("Ada")
         teacher.open()
         teacher.teach(room.key)
-        teacher.find("Follow")
-        with Script(address, teacher.page) as script:
-            script.read("frame")
-            teacher.find("1. Ada")
-            teacher.change("Follow", "1. Ada")
-            assert not script.read_until("state", lambda state: not state["own"])["own"]
-            ada.tell({"do": "Hold", "on": True})
-            script.read_until("frame", lambda frame: frame["rows"][-1][1] == 3)
-            script.do("Hold", on=False)
-            assert "only shown" in script.read("refused")["why"]
+        teacher.set("class.follow", 1)
+        teacher.read(lambda: not teacher.state["own"])
+        ada.tell({"do": "Hold", "on": True})
+        teacher.read(lambda: teacher.told["frame"]["rows"][-1][1] == 3)
+        teacher.tell({"do": "Hold", "on": False})
+        teacher.read(lambda: "only shown" in teacher.told.get("refused", {}).get("why", ""))
 
 
 @pytest.mark.parametrize("part", ["_feed", "_build"])

@@ -97,15 +97,15 @@ def test_a_class_whose_process_is_killed_goes_on_with_the_other_and_stays(
     with ExitStack() as stack:
         klass = Class(running, stack)
         klass.come_in()
-        ada, bob, until, press = klass.ada, klass.bob, klass.until, klass.teacher.change
+        ada, bob, until, lead = klass.ada, klass.bob, klass.until, klass.teacher.lead
         codes = [ada.code, bob.code]
-        press("Open this step for all")
+        lead("send_step")
         until(lambda: ada.sees("Step 1 of") and bob.sees("Step 1 of"))
         ada.press("Next")
         until(lambda: ada.sees("Step 2 of"))
         until(lambda: {each["taken"] for each in running.kept_class().get("members", [])} == {1})
         until(lambda: running.has_kept(ada.code, "'step': 1"))
-        press("Freeze all labs")
+        lead("freeze")
         until(lambda: bob.sees("stopped all labs"))
         until(lambda: running.kept_class().get("frozen"))
         killed = running.site.serving()
@@ -114,7 +114,7 @@ def test_a_class_whose_process_is_killed_goes_on_with_the_other_and_stays(
         assert running.site.serving() is not killed and [ada.code, bob.code] == codes
         until(lambda: ada.sees("Step 2 of") and ada.sees("stopped all labs"))
         until(lambda: bob.sees("Step 1 of") and bob.sees("stopped all labs"))
-        press("Let all labs go on")
+        lead("thaw")
         until(lambda: not bob.sees("stopped all labs"))
         # The class stays where it is, also when somebody new is sent to the first process.
         killed.start_again()
