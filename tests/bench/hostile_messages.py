@@ -120,7 +120,6 @@ ASKED: dict[str, dict[str, Any]] = {
     "part": {"number": 1, "content": "MCww"},
     "drop": {"number": 1},
     "make": {"file": "table"},
-    "lead": {"do": "freeze"},
     "freehand": {},
     "ask": {"what": "laws"},
     "prefer": {"name": "sounds", "on": True},
