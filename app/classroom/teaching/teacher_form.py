@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 import msgspec
 
@@ -293,7 +293,7 @@ def _button(
     return FormField(name=name, kind="button", label=label, act=act, asks=asks, tone=tone)
 
 
-def _choice(name: str, label: str, options: dict[str, FieldValue] | dict[str, int]) -> FormField:
+def _choice(name: str, label: str, options: Mapping[str, FieldValue]) -> FormField:
     """A choice, from the label of each option to its value."""
     offered = tuple(FormOption(value=value, label=text) for text, value in options.items())
     return FormField(name=PREFIX + name, kind="choice", label=label, options=offered)

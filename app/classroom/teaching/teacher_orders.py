@@ -46,7 +46,7 @@ class TeacherOrders:
     ) -> None:
         self._course, self._teaching, self._class = course, teaching, teaching.classroom
         self._chosen, self._post, self._deliver = teaching.chosen, post, deliver
-        self._of_texts: Mapping[str, Callable[[Any], None]] = {
+        self._of_texts: Mapping[str, Callable[[Any], object]] = {
             "name": self._rename,
             "setup": self._send_code,
             "lesson": self._choose_lesson,
@@ -54,14 +54,14 @@ class TeacherOrders:
             "route": self._choose_route,
             "pace_lesson": self._choose_pace,
         }
-        self._of_numbers: Mapping[str, Callable[[Any], None]] = {
+        self._of_numbers: Mapping[str, Callable[[Any], object]] = {
             "follow": self._follow,
             "step": self._choose_step,
             "pair": self._choose_gains,
             "pace_first": partial(self._choose_border, "first"),
             "pace_last": partial(self._choose_border, "last"),
         }
-        self._of_switches: Mapping[str, Callable[[Any], None]] = {
+        self._of_switches: Mapping[str, Callable[[Any], object]] = {
             "shown": self._show_answers,
             "revealed": self._reveal,
             "large": lambda on: post(Set("presenting", on)),
