@@ -60,8 +60,8 @@ class TeacherForm:
         """What is always seen."""
         words, orders, fields = self._words, self._teaching.classroom.orders, list[FormField]()
         if self._course.lessons:
-            for by, order in ((-1, "back"), (1, "next")):
-                fields += self._beside(by, order)
+            fields += self._beside(-1)
+            fields += self._beside(1)
         freezing = "thaw" if orders.frozen else "freeze"
         label = words("class.unfreeze" if orders.frozen else "class.freeze")
         fields.append(_button(freezing, label, tone="warning"))
@@ -69,20 +69,20 @@ class TeacherForm:
             fields.append(_button("own_lab", words("class.own_lab")))
         return _group("lead", words("class.lead"), [_note("told"), _note("who"), *fields])
 
-    def _beside(self, by: int, order: Order) -> Iterator[FormField]:
+    def _beside(self, by: int) -> Iterator[FormField]:
         """The button for the next step, or for the one before, if there is one."""
         words, classroom = self._words, self._teaching.classroom
         step = self._steps.beside(classroom.display, classroom.orders, by)
         if step is None:
             return
         if by < 0:
-            yield _button(order, words("class.back"))
+            yield _button("back", words("class.back"))
             return
         there = self._course.lesson(step.lesson, words.language)
         label = step_label(there, step.step, words, self._large)
         if step.lesson != self._shown[0]:
             label = f"{self._titles[step.lesson]}, {label}"
-        yield _button(order, words("class.next_step", step=label), tone="main")
+        yield _button("next", words("class.next_step", step=label), tone="main")
 
     def _class(self) -> FormGroup:
         words, classroom = self._words, self._teaching.classroom
