@@ -19,7 +19,6 @@ ORDER = [
     "app.cli",
     "app.notebook",
     "app.server",
-    "app.page",
     "app.exports",
     "app.classroom",
     "app.scene",
@@ -44,7 +43,7 @@ ORDER = [
 ]
 MATHEMATICS = ("models", "lessons")
 FOREIGN = {"viser", "threading", "time", "asyncio", "datetime", "random"}
-DRAWING = ("app.page", "app.scene")
+DRAWING = ("app.scene",)
 LIVE = ("lab", "simulation", "history", "lesson_run", "snapshots.take_snapshot")
 """Modules of app.lab that know a lab as it lives: what draws is given snapshots of it."""
 
@@ -263,15 +262,6 @@ def test_public_parts_and_own_private_names_are_no_private_parts() -> None:
     public = "import viser\nfrom viser import transforms\nserver.on_client_connect(self._greet)"
     own = "class A:\n    def copy(self, other):\n        self._rows = other._rows"
     assert private_parts(ast.parse(public)) == private_parts(ast.parse(own)) == []
-
-
-def test_files_of_pages_come_in_one_way() -> None:
-    """With the limits of file_uploads.py."""
-
-    def hears_uploads(file: Path) -> bool:
-        return ".on_upload(" in file.read_text("utf-8")
-
-    assert offenders(hears_uploads) == ["app/viser_adapter/file_uploads.py: True"]
 
 
 def test_rules_would_notice() -> None:

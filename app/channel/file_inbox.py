@@ -8,15 +8,12 @@ from weakref import WeakSet
 
 from onpath.app.channel.messages import DropFile, SendFile, SendPart
 from onpath.app.common.allowance import Allowance
-from onpath.app.viser_adapter.file_uploads import (
-    FILES,
-    FILES_PER_SECOND,
-    MOST_TOGETHER,
-    SECONDS,
-)
 from onpath.models.errors import CodedError
 
 MOST_BYTES = 1_000_000  # of a file with a path
+MOST_TOGETHER = 50_000_000  # [B], of the files of all pages that are under way
+SECONDS = 30.0  # [s] from the first message of a file to its last
+FILES, FILES_PER_SECOND = 10, 0.1  # in a row, and in the long run, of one page
 
 
 class FileInbox:

@@ -30,11 +30,11 @@ from onpath.app.channel.sheet_messages import (
     Told,
 )
 from onpath.app.lab.setups.share_code import LONGEST_TEXT
-from onpath.app.viser_adapter.file_uploads import LONGEST_NAME
 from onpath.lessons.checks import Verdict
 
 JointSymbol = Literal["q_1", "q_2", "delta", "rho"]
 """The symbols of lessons whose meaning depends on the kind of robot."""
+LONGEST_NAME = 200  # of a file, [characters]
 
 # From the page
 
@@ -58,6 +58,7 @@ class Hello(
         site: where the browser has opened the site.
         dark: whether the browser asks for dark pages.
         plain: whether it draws in software, so that the scene must be quickly drawn.
+        upright: whether its window is so; letters in the scene are larger then.
         speaks, sounds, first_minute: see `Store`.
     """
 
@@ -67,6 +68,7 @@ class Hello(
     site: Kept = ""
     dark: bool = False
     plain: bool = False
+    upright: bool = False
     speaks: Kept = ""
     sounds: Kept = ""
     first_minute: Kept = ""
@@ -83,7 +85,13 @@ class Dark(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag=
 
 
 class Resized(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="resized"):
-    """The canvas has another size: the camera is then fitted to it."""
+    """The canvas has another size: the camera is then fitted to it.
+
+    Attributes:
+        upright: see `Hello`.
+    """
+
+    upright: bool = False
 
 
 class Skip(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="skip"):
@@ -382,7 +390,8 @@ class StateMessage(Struct, frozen=True, kw_only=True, tag_field="is", tag="state
         rows: what can be plotted of these robots.
         laws: names of the robots' control laws; a typed one is its own name.
         shared: the share code that was made last; may be empty.
-        scene: number of viser's client for which the lab draws the robots; 0 without one.
+        scene: how many times the page had asked for a picture of the robots when it asked for the
+            present one; 0 without one.
     """
 
     language: str

@@ -9,17 +9,13 @@ from contextlib import suppress
 from datetime import datetime
 from typing import Any, Protocol
 
-import viser
-
 from onpath.app.common.error_log import log_error
-from onpath.app.exports.comparison import Results, compared, outcomes_of
+from onpath.app.exports.comparison import outcomes_of
 from onpath.app.exports.export_process import ExportProcess, ExportStopped
 from onpath.app.exports.files import csv_file, film_file, picture_file, report_file
 from onpath.app.lab.lab import Lab
 from onpath.lessons.words import Words
-from onpath.models.paths.curves import Curve
 from onpath.models.studies.comparison import Outcome
-from onpath.models.systems.parameters import Parameters
 
 PATIENCE = 120.0  # [s], of a file, including the files queued before it
 process = ExportProcess()
@@ -38,39 +34,6 @@ class Delivery(Protocol):
 
     def failed(self, name: str, words: Words) -> None:
         """The file, or what is called so, could not be made."""
-
-
-class ViserDelivery:
-    """viser's notifications and downloads."""
-
-    def __init__(self, client: viser.ClientHandle) -> None:
-        self._client = client
-        self._note: Any = None
-
-    def making(self, name: str, words: Words) -> None:
-        """Show that a file is being made."""
-        self._note = self._client.add_notification(
-            words("export.title"),
-            words("export.making", name=name),
-            loading=True,
-            with_close_button=False,
-        )
-
-    def ready(self, name: str, content: bytes, words: Words) -> None:
-        """Download a file."""
-        self._client.send_file_download(name, content, save_immediately=True)
-        note = self._note
-        note.body, note.loading = words("export.ready", name=name), False
-        note.auto_close_seconds = 3.0
-        note.with_close_button = True
-
-    def failed(self, name: str, words: Words) -> None:
-        """Say that a file could not be made."""
-        note, text = self._note, words("export.failed", name=name)
-        if note is None:
-            self._client.add_notification(words("export.title"), text)
-        else:
-            note.body, note.loading, note.with_close_button = text, False, True
 
 
 class Exporter:
@@ -143,70 +106,6 @@ class Exporter:
             self._wanted.append(lambda lab: refuse(lab.words("export.busy")))
         else:
             self._want(start)
-
-    def compare(
-        self, laws: Sequence[str], obstruction: str, show: Callable[[Results, bytes], None]
-    ) -> None:
-        """Request a comparison of laws, with the lab's robot, parameters and path.
-
-        Args:
-            show: called with the results so far and their picture, after each law.
-        """
-
-        def start(lab: Lab) -> None:
-            simulation = lab.simulation
-            parameters, curve = simulation.parameters, simulation.editor.curve
-            if not curve.closed or parameters.task != "speed" or parameters.speed == 0:
-                lab.show_message(lab.words("compare.path"), "warning")
-                self._under_way = False
-                return
-            with suppress(RuntimeError):  # the interpreter is shutting down
-                self._latest = _queue.submit(
-                    self._compare,
-                    robot=simulation.entry.name,
-                    parameters=parameters,
-                    curve=curve,
-                    laws=list(laws),
-                    obstruction=obstruction,
-                    language=lab.words.language,
-                    show=show,
-                )
-
-        self._want(start)
-
-    def _compare(
-        self,
-        robot: str,
-        parameters: Parameters,
-        curve: Curve,
-        laws: list[str],
-        obstruction: str,
-        language: str,
-        show: Callable[[Results, bytes], None],
-    ) -> None:
-        """Compare one law after the other, so that other tabs' files can be made in between."""
-        results: Results = {}
-        try:
-            for law in laws:
-                results, picture = process.call(
-                    PATIENCE,
-                    compared,
-                    robot,
-                    parameters,
-                    curve,
-                    results,
-                    law,
-                    obstruction,
-                    language,
-                )
-                show(results, picture)
-        except ExportStopped:
-            return  # the server is stopping
-        except Exception as error:  # reported to the user; the lab continues
-            log_error(error)
-            words = Words(language)
-            self._delivery.failed(words("compare.title"), words)
-        self._under_way = False
 
     def report(self, code: str = "") -> None:
         """Request the lesson report as a page.

@@ -25,7 +25,7 @@ from onpath.app.scene.step_drawings import StepDrawings
 from onpath.app.scene.tones import DARK, LIGHT
 from onpath.app.view.state_message import Projection
 from onpath.app.viser_adapter.frame_channel import FrameChannel
-from onpath.app.viser_adapter.page_release import clear_scene
+from onpath.app.viser_adapter.scene_release import clear_scene
 from onpath.lessons.course import Course
 from onpath.models.arrays import Array
 from onpath.models.systems.robots import Robot
@@ -63,13 +63,14 @@ class ClientScene:
 
     Args:
         first: the initial snapshot.
+        number: by which the page knows this client among all that it has asked for.
         look: how it is to be drawn.
         course: the lessons, whose steps switch drawings on.
         post: takes the commands of the mouse; those on another's lab are ignored.
         switches: names of the drawings that are switched on; see `Overlays`.
 
     Attributes:
-        client: whose scene it is.
+        client, number, switches: see above.
         is_outdated: whether it must be rebuilt, for which it needs a complete snapshot.
         pull: name of the plane in which the mouse pulls end-points; the stage's first if it has
             none of this name.
@@ -79,12 +80,14 @@ class ClientScene:
         self,
         client: viser.ClientHandle,
         first: PageSnapshot,
+        number: int,
         look: Look,
         course: Course,
         post: Post,
         switches: set[str],
     ) -> None:
-        self.client, self._look, self._post, self.switches = client, look, post, switches
+        self.client, self.number, self.switches = client, number, switches
+        self._look, self._post = look, post
         self.pull = IN_PATH_PLANE
         self._channel = FrameChannel(client)
         self._rebuilds = WorkThread("rebuild")
@@ -228,7 +231,7 @@ class ClientScene:
         camera = self.client.camera
         width, height = camera.image_width, camera.image_height
         shape = width / max(height, 1)
-        if width > 0 and abs(shape - self._framed) > 0.02 * shape:
+        if width > 0 and abs(shape - self._framed) > 0.01 * shape:
             self._framed = shape
             self._scene.frame_camera(_insets(height))
 

@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     import viser
 
 FIELD_OF_VIEW = np.radians(15.0)
-NARROW = 0.8
-"""Aspect ratio below which the panel covers a window's lower part."""
 DOWN = np.array([0.0, 1.0, 0.0, 0.0])
 """Orientation of a picture that lies on the ground, seen from above."""
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])

@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterable
 
 from onpath.app.classroom.admission import Admission
 from onpath.app.classroom.classroom import Classroom
-from onpath.app.page.page_context import ClassSeat
 from onpath.app.server.class_service import ClassService
+from onpath.app.server.page_context import ClassSeat
 from onpath.app.viser_adapter.addresses import CLASS, class_code_in, class_link
 
 

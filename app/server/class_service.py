@@ -12,9 +12,9 @@ from onpath.app.classroom.teaching.teacher_context import TeacherChoices, Teache
 from onpath.app.lab.commands import CloseLesson, ReportState, TakeSetup
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.setups.capture import capture
-from onpath.app.page.page_context import ClassSeat
 from onpath.app.server.followed_lab import FollowedLab
 from onpath.app.server.lab_registry import LabRegistry
+from onpath.app.server.page_context import ClassSeat
 from onpath.app.server.site_address import is_local
 from onpath.app.server.visit import Visit
 from onpath.app.simulation.scheduled_lab import ScheduledLab

@@ -15,7 +15,7 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.snapshot import Motion
 from onpath.app.lab.snapshots.take_snapshot import take_motion, take_page_snapshot
-from onpath.app.page.page import Page
+from onpath.app.scene.client_scene import ClientScene
 from onpath.app.server.followed_lab import FollowedLab
 from onpath.app.server.page_data import EVERY, PageData
 from onpath.app.simulation.display_rate import AT_EASE, is_turn
@@ -26,28 +26,28 @@ class LabFeed(LabDisplay):
     """Shows a lab on a page.
 
     Args:
-        data: what our own part of the page is told.
-        make: builds viser's part of the page.
+        data: what the page is told.
+        make: builds the robots' picture.
         send: sends what has been handed over for all pages.
         offset: spreads the pages over the frames.
         nickname: returns the student's nickname in the class; empty if there is none.
         followed: the student's lab that a teacher's page shows instead, or None.
 
     Attributes:
-        page: viser's part of the page, as long as it is there.
+        scene: the robots' picture, as long as it is there.
         make: builds it.
     """
 
     def __init__(
         self,
         data: PageData,
-        make: Callable[[viser.ClientHandle, PageSnapshot], Page],
+        make: Callable[[viser.ClientHandle, PageSnapshot, int], ClientScene],
         send: Callable[[], None],
         offset: int,
         nickname: Callable[[], str] = str,
         followed: FollowedLab | None = None,
     ) -> None:
-        self.page: Page | None = None
+        self.scene: ClientScene | None = None
         self._data, self.make, self._send = data, make, send
         self._offset, self._nickname, self._followed = offset, nickname, followed
         self._lab: Lab | None = None
@@ -56,16 +56,16 @@ class LabFeed(LabDisplay):
         self._whole: PageSnapshot | None = None
 
     @property
-    def _ready(self) -> Page | None:
-        """Viser's part of the page, unless it is missing or being built."""
-        page = self.page  # another thread may remove it
-        return page if page is not None and page.is_ready else None
+    def _ready(self) -> ClientScene | None:
+        """The robots' picture, unless it is missing or being built."""
+        scene = self.scene  # another thread may remove it
+        return scene if scene is not None and scene.is_ready else None
 
     @property
     @override
     def is_outdated(self) -> bool:
-        page = self._ready
-        return page is not None and page.is_outdated
+        scene = self._ready
+        return scene is not None and scene.is_outdated
 
     @override
     def is_turn(self, lab: Lab, frame: int, stride: float) -> bool:
@@ -86,12 +86,12 @@ class LabFeed(LabDisplay):
         lab, _, student = self._source(lab, 1.0)
         if self._has_news(lab):
             self._last = motion = take_motion(lab, self._last, student)
-            if (page := self._ready) is not None:
-                page.show(motion)
+            if (scene := self._ready) is not None:
+                scene.show(motion)
 
     def _settle(self) -> None:
-        if (page := self._ready) is not None:
-            page.settle()
+        if (scene := self._ready) is not None:
+            scene.settle()
 
     @override
     def refresh(self, lab: Lab, achieved: float) -> None:
@@ -99,10 +99,9 @@ class LabFeed(LabDisplay):
         self._has_news(lab)  # remembers what is shown now
         snapshot = take_page_snapshot(lab, achieved, self._whole, student, self._nickname())
         self._last = self._whole = snapshot
-        if (page := self._ready) is not None:
-            page.show(snapshot)
-            page.exporter.serve(lab)
-        self._data.tell(snapshot, self.page, lab.simulation.robot)
+        if (scene := self._ready) is not None:
+            scene.show(snapshot)
+        self._data.tell(snapshot, self.scene, lab.simulation.robot)
 
     def _source(self, lab: Lab, achieved: float) -> tuple[Lab, float, int]:
         """The displayed lab, its achieved speed, and its student's number; see `PageKey`."""
@@ -128,31 +127,31 @@ class LabFeed(LabDisplay):
 
     @override
     def send(self) -> None:
-        page = self.page
-        if page is not None:
-            page.send()
+        scene = self.scene
+        if scene is not None:
+            scene.send()
         self._send()
 
     def first(self) -> PageSnapshot:
         """The lab as a page is to show it first."""
         return take_page_snapshot(self._data.own, 1.0, nickname=self._nickname())
 
-    def furnish(self, page: Page) -> None:
-        """Show the lab in viser's part of the page, too. Not in the simulation thread."""
-        before, self.page = self.page, page
+    def furnish(self, scene: ClientScene) -> None:
+        """Show the lab in the robots' picture, too. Not in the simulation thread."""
+        before, self.scene = self.scene, scene
         if before is not None:
             before.close()
 
     def unfurnish(self, client: viser.ClientHandle) -> None:
-        """Go on without viser's part of the page, if it is still this client's."""
-        page = self.page
-        if page is not None and page.client is client:
-            self.page = None
-            page.close()
+        """Go on without the robots' picture, if it is still this client's."""
+        scene = self.scene
+        if scene is not None and scene.client is client:
+            self.scene = None
+            scene.close()
 
     def close(self) -> None:
         """Release the page's resources. Thread-safe."""
         self._data.close()
-        page, self.page = self.page, None
-        if page is not None:
-            page.close()
+        scene, self.scene = self.scene, None
+        if scene is not None:
+            scene.close()

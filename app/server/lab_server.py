@@ -22,11 +22,8 @@ from onpath.app.common.periodic import Periodic
 from onpath.app.exports import exporter as exports
 from onpath.app.exports import path_upload
 from onpath.app.lab.loops.loop_cache import LoopCache
-from onpath.app.page.page import Page
-from onpath.app.page.page_context import PageContext
-from onpath.app.page.page_text import PageText
-from onpath.app.page.teacher_page import TeacherPage
 from onpath.app.scene.build_queue import BuildQueue, one_at_a_time
+from onpath.app.scene.client_scene import ClientScene
 from onpath.app.scene.stage import set_initial_camera
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.server.admission_queue import AdmissionQueue
@@ -38,7 +35,9 @@ from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_registry import LabRegistry, RegisteredLab
 from onpath.app.server.new_lab import new_lab
 from onpath.app.server.own_part import own_part
+from onpath.app.server.page_context import PageContext
 from onpath.app.server.page_data import PageData
+from onpath.app.server.page_text import PageText
 from onpath.app.server.robot_shapes import prepare_shapes
 from onpath.app.server.server_options import USUAL, ServerOptions
 from onpath.app.server.site_address import reachable_site, site_for_students
@@ -54,7 +53,7 @@ from onpath.app.storage.records import NotKept, Records
 from onpath.app.storage.write_behind import WriteBehind
 from onpath.app.viser_adapter.addresses import class_address
 from onpath.app.viser_adapter.connections import turn_away
-from onpath.app.viser_adapter.page_release import clear_page
+from onpath.app.viser_adapter.scene_release import clear_scene
 from onpath.app.viser_adapter.secure_server import make_server
 from onpath.lessons.course import read_course
 from onpath.lessons.problems import LessonError
@@ -245,26 +244,28 @@ class LabServer:
         self._furnish(visit)
 
     def _furnish(self, visit: Visit) -> None:
-        """Build viser's part of a page, once both it and the lab are there."""
+        """Build the robots' picture of a page, once both its client and the lab are there."""
         self._newcomers.submit(partial(self._build, visit))
 
     def _build(self, visit: Visit) -> None:
-        """Build viser's part of a page, unless it is there, or something is missing."""
-        client, feed = visit.client, visit.feed
-        if client is None or feed is None or (feed.page is not None and feed.page.client is client):
+        """Build the robots' picture of a page, unless it is there, or something is missing."""
+        client, number, feed = visit.client, visit.asked, visit.feed
+        if client is None or feed is None:
+            return
+        if feed.scene is not None and feed.scene.client is client:
             return
         try:
-            page = feed.make(client, self.thread.call(feed.first))
+            scene = feed.make(client, self.thread.call(feed.first), number)
         except Exception as error:
             log_error(error)
-            turn_away(self.server, client.client_id, "a page that could not be built")
+            turn_away(self.server, client.client_id, "a picture that could not be built")
             return
-        feed.furnish(page)
+        feed.furnish(scene)
         if visit.client is not client or visit.feed is not feed:
             feed.unfurnish(client)
 
     def _feed(self, visit: Visit, entry: RegisteredLab) -> LabFeed:
-        """What shows a lab, or a teacher's page, to a visit."""
+        """What shows a lab to a visit."""
         code, lab = entry.code, entry.scheduled.lab
         service, teacher = self._classes.at(visit.prefix), visit.teacher
         reopen = partial(self._reopen, visit, entry)
@@ -300,10 +301,15 @@ class LabServer:
             presses=visit.presses,
             teaching=teaching,
         )
-        make = Page if teaching is None else partial(TeacherPage, teaching=teaching)
         return LabFeed(
             PageData(visit.stream, lab, context, visit.sight),
-            make=partial(make, context=context),
+            make=partial(
+                ClientScene,
+                look=visit.look,
+                course=self._course,
+                post=lab.post,
+                switches=context.switches,
+            ),
             send=self.visits.channel.send,
             offset=visit.number,
             nickname=partial(service.nickname, code) if service else str,
@@ -346,8 +352,8 @@ class LabServer:
         visit.show_nothing()
         client = visit.client
         if client is not None:
-            with one_at_a_time:  # viser's part may be under construction
-                clear_page(client)
+            with one_at_a_time:  # its scene may be under construction
+                clear_scene(client)
         self._open(visit, entry)
 
 

@@ -44,14 +44,14 @@ from onpath.app.common.work_thread import WorkThread
 from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.snapshot import Motion, PathSnapshot
-from onpath.app.page.page import Page
-from onpath.app.page.page_context import PageContext
-from onpath.app.page.page_requests import PageRequests
+from onpath.app.scene.client_scene import ClientScene
 from onpath.app.scene.projection import seen_at_first
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.server.page_class import PageClass, is_of_class
+from onpath.app.server.page_context import PageContext
 from onpath.app.server.page_files import PageFiles
 from onpath.app.server.page_form import PageForm
+from onpath.app.server.page_requests import PageRequests
 from onpath.app.server.tab_visibility import TabVisibility
 from onpath.app.view.page_words import words_message
 from onpath.app.view.sheets import class_message
@@ -93,7 +93,8 @@ class PageData:
         self._server = PageRequests(context, self._files.exporter)
         self._thread = WorkThread("page")
         teaching = context.teaching
-        self._form = PageForm(own.post, self._thread.submit, teaches=teaching is not None)
+        submit, teaches = self._thread.submit, teaching is not None
+        self._form = PageForm(own.post, submit, context.switches, teaches=teaches)
         self._taught: PageClass | None = None
         if teaching is not None:
             delivery = self._files.delivery
@@ -166,11 +167,11 @@ class PageData:
             self._told = time.monotonic()
             stream.hand_over(*messages)
 
-    def tell(self, snapshot: PageSnapshot, page: Page | None, robot: Robot) -> None:
+    def tell(self, snapshot: PageSnapshot, scene: ClientScene | None, robot: Robot) -> None:
         """Hand over what has changed of the texts, of the state and of what the lessons show.
 
         Args:
-            page: viser's part, if it is there.
+            scene: the robots' picture, if it is there.
             robot: of the lab.
         """
         text = self._text
@@ -179,7 +180,7 @@ class PageData:
             self._skips = False
             text.end_introduction()
         while self._requests:
-            self._server.serve(self._requests.popleft(), snapshot, page, self._answer)
+            self._server.serve(self._requests.popleft(), snapshot, scene, self._answer)
         if self._stream.opened != self._opened or self._stream.is_busy:
             return
         if not self._stream.is_open:
@@ -190,8 +191,8 @@ class PageData:
                 messages.append(_text_of(LabCode, self._context.code))
             self._language = text.words.language
             messages.append(partial(words_message, self._language))
-        scene = 0 if page is None else page.client.client_id
-        state = text.state(snapshot, self._seen_on(snapshot, page, robot), scene)
+        number = 0 if scene is None else scene.number
+        state = text.state(snapshot, self._seen_on(snapshot, scene, robot), number)
         if news := changes(state, self._state):
             self._state = state
             messages.append(partial(encoded_changes, StateMessage, news))
@@ -199,7 +200,7 @@ class PageData:
             self._class = seat
             messages.append(partial(encoded, seat))
         messages += self._of_lesson()
-        messages += self._of_forms(snapshot, page)
+        messages += self._of_forms(snapshot, scene)
         while self._answers:
             messages.append(partial(encoded, self._answers.popleft()))
         if messages:
@@ -216,11 +217,11 @@ class PageData:
             privacy=context.privacy_url,
         )
 
-    def _of_forms(self, snapshot: PageSnapshot, page: Page | None) -> list[Message]:
+    def _of_forms(self, snapshot: PageSnapshot, scene: ClientScene | None) -> list[Message]:
         """What the page is told of its fields, once it has asked for them."""
         if not self._form.is_asked:
             return []
-        news = [*self._form.news(snapshot, page, self._context.course, self._text.words)]
+        news = [*self._form.news(snapshot, scene, self._context.course, self._text.words)]
         if self._taught is not None:
             news += self._taught.news()
         return [partial(encoded, each) for each in news]
@@ -239,10 +240,12 @@ class PageData:
                 messages.append(partial(bytes, column.measured))
         return messages
 
-    def _seen_on(self, snapshot: PageSnapshot, page: Page | None, robot: Robot) -> Projection:
+    def _seen_on(
+        self, snapshot: PageSnapshot, scene: ClientScene | None, robot: Robot
+    ) -> Projection:
         """How the picture shows the robots, or would, if there is none."""
-        if page is not None:
-            self._view = robot, page.seen(snapshot)
+        if scene is not None:
+            self._view = robot, scene.seen(snapshot)
         elif self._view is None or self._view[0] is not robot:
             self._view = robot, seen_at_first(stage_of(robot), robot)
         return self._view[1]
@@ -297,8 +300,8 @@ class PageData:
                 self._sight.hear()
             case Dark(on=on):
                 self._context.look.dark = on
-            case Resized():
-                self._is_resized = True
+            case Resized(upright=upright):
+                self._is_resized, self._context.look.upright = True, upright
             case Skip():
                 self._skips = True
             case Light(symbol=symbol):

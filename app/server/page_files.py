@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from msgspec import Struct
 from typing_extensions import override
 
-from onpath.app.channel.file_inbox import MOST_BYTES, FileInbox
+from onpath.app.channel.file_inbox import MOST_BYTES, SECONDS, FileInbox
 from onpath.app.channel.messages import (
     DownloadMessage,
     DownloadPart,
@@ -24,7 +24,6 @@ from onpath.app.channel.messages import (
 from onpath.app.exports.exporter import Delivery, Exporter
 from onpath.app.exports.path_upload import PathReader, Upload
 from onpath.app.lab.lab import Command, Lab
-from onpath.app.viser_adapter.file_uploads import SECONDS
 from onpath.lessons.words import Words
 from onpath.models.errors import CodedError, Message
 from onpath.models.path_files.placing import RADIUS, ROUND, SMOOTH, Placing

@@ -24,7 +24,7 @@ from onpath.app.common.background import Background, Submit
 from onpath.app.lab.commands import ChooseLaw, ChoosePath, PlacePoint, SelectPoint, Set, TypeLaw
 from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of, robot_of
-from onpath.app.page.page import Page
+from onpath.app.scene.client_scene import ClientScene
 from onpath.app.scene.overlays import Overlays
 from onpath.app.scene.rank_nodes import largest
 from onpath.app.view.lab_form import (
@@ -74,14 +74,20 @@ class PageForm:
     Args:
         post: of the lab that the page may change.
         submit: runs a function in another thread.
+        switches: names of what is drawn besides the robots; changed by what the page has set.
         teaches: whether the page is a teacher's, which has no form of a step; of a student's lab
             it has what is drawn alone.
     """
 
     def __init__(
-        self, post: Callable[[Command], None], submit: Submit, teaches: bool = False
+        self,
+        post: Callable[[Command], None],
+        submit: Submit,
+        switches: set[str],
+        teaches: bool = False,
     ) -> None:
-        self._post, self.is_asked, self._teaches = post, False, teaches
+        self._post, self._switches = post, switches
+        self.is_asked, self._teaches = False, teaches
         self._heard = dict[str, int]()
         self._own = deque[SetField]()  # what concerns the page alone
         self._typing = set[str]()  # sides for which a law is being typed
@@ -160,22 +166,21 @@ class PageForm:
         return words("design.rank", number=self._rank[1])
 
     def news(
-        self, snapshot: PageSnapshot, page: Page | None, course: Course, words: Words
+        self, snapshot: PageSnapshot, scene: ClientScene | None, course: Course, words: Words
     ) -> Iterator[Struct]:
         """What has changed since the last time. In the simulation thread.
 
         Args:
-            page: viser's part, if it is there; it has the drawings.
+            scene: the robots' picture, if it is there.
         """
-        switches = set[str]() if page is None else page.switches
-        heard = dict(self._heard)
+        switches, heard = self._switches, dict(self._heard)
         while self._own:
             message = self._own.popleft()
             if message.name in _DRAWN:
                 change = switches.add if message.value else switches.discard
                 change(_DRAWN[message.name])
-            elif message.name == "pull" and page is not None and message.value in PULLS:
-                page.pull = str(message.value)
+            elif message.name == "pull" and scene is not None and message.value in PULLS:
+                scene.pull = str(message.value)
             self._hear(message.name, message.number)
             heard[message.name] = message.number
         setup = None if self._teaches else _setup(snapshot, course, words)
@@ -189,9 +194,9 @@ class PageForm:
         self._forms = forms
         drawn = {name: name in switches for name in SWITCHES}
         values = values_in(snapshot, drawn, self._typing, words, self._critical_alpha(snapshot))
-        values["pull"] = PULLS[0] if page is None else page.pull
+        values["pull"] = PULLS[0] if scene is None else scene.pull
         values["least_rank"] = self._least_rank(snapshot, words)
-        values |= _notes_on(None if page is None else page.overlays, snapshot, words)
+        values |= _notes_on(None if scene is None else scene.overlays, snapshot, words)
         refused = refusals_in(snapshot)
         changed = dict[str, FieldValue]()
         if values != self._values:

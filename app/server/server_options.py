@@ -6,11 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from onpath.app.channel.file_inbox import MOST_BYTES
 from onpath.app.classroom.classroom import Classroom
 from onpath.app.storage.expiry import Retention
 from onpath.app.storage.records import Records
-from onpath.app.viser_adapter.message_filter import Limits
+from onpath.app.viser_adapter.limits import Limits
 from onpath.lessons.course import Course
 from onpath.models.paths.path_design import PathDesign
 from onpath.models.systems.catalogue import FIVE_BAR, RobotEntry
@@ -47,7 +46,7 @@ class ServerOptions:
     path: PathDesign | None = None
     law: str = ""
     settings: Mapping[str, str] = field(default_factory=dict[str, str])
-    limits: Limits = Limits(max_upload_bytes=MOST_BYTES)
+    limits: Limits = Limits()
     allowed_origins: tuple[str, ...] = ()
     trusted_proxies: tuple[str, ...] = ()
     unix_socket: Path | None = None

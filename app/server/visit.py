@@ -37,6 +37,7 @@ class Visit:
         look: how its scene is to be drawn.
         presses: limit what it asks for that takes long.
         client: viser's, while there is one.
+        asked: how many times the page had asked for a picture when it asked for this client.
         feed: shows its lab; None before it has one.
         teacher: the pass and the choices of a teacher, or None.
     """
@@ -54,9 +55,10 @@ class Visit:
         self.language = connection.language
         self.stream = PageStream(channel, left)
         self.stream.receive = _no_lab
-        self.look, self.presses = Look(hello.dark, hello.plain), Presses()
+        self.look, self.presses = Look(hello.dark, hello.plain, hello.upright), Presses()
         self.sight = TabVisibility()
         self.client: viser.ClientHandle | None = None
+        self.asked = 0
         self.feed: LabFeed | None = None
         self.teacher: tuple[str, TeacherChoices] | None = None
         self._kept = dict[str, str]()  # since the page greeted

@@ -20,9 +20,10 @@ from onpath.app.viser_adapter.connections import (
     turn_away,
 )
 from onpath.app.viser_adapter.data_channel import DataChannel, PageStream
-from onpath.app.viser_adapter.page_release import release_page
+from onpath.app.viser_adapter.scene_release import release_scene
 from onpath.app.viser_adapter.secure_connection import SecureConnection
 
+DIGITS = 10  # of the number of askings, at most
 _hello = msgspec.json.Decoder(Hello)
 
 
@@ -97,8 +98,13 @@ class Visits:
         self._of_page[hello.page] = visit
         return visit
 
-    def _client_comes(self, client: viser.ClientHandle, page: str) -> None:
-        """Give viser's client to the page that has this number."""
+    def _client_comes(self, client: viser.ClientHandle, answer: str) -> None:
+        """Give viser's client to the page that has asked for it.
+
+        Args:
+            answer: "PAGE.ASKED": its number, and how many times it has asked for a picture.
+        """
+        page, _, asked = answer.partition(".")
         visit, connection = self._of_page.get(page), connection_of(self._server, client.client_id)
         if connection is None:  # disconnected already
             return
@@ -106,6 +112,7 @@ class Visits:
             turn_away(self._server, client.client_id, "a picture without a page")
             return
         before, visit.client = visit.client, client
+        visit.asked = int(asked) if asked.isdecimal() and len(asked) < DIGITS else 1
         self._of_client[client.client_id] = visit
         if before is not None:
             turn_away(self._server, before.client_id, "a picture that another one replaces")
@@ -119,10 +126,10 @@ class Visits:
         run_in_thread(self._server, partial(self._release, client, visit))
 
     def _release(self, client: viser.ClientHandle, visit: Visit | None) -> None:
-        """Forget the page of a client. In a thread."""
+        """Forget the scene of a client. In a thread."""
         if visit is not None and visit.feed is not None:
             visit.feed.unfurnish(client)
-        release_page(client)
+        release_scene(client)
 
     def _end_if_left(self, visit: Visit) -> None:
         if not visit.is_connected and self._of_page.pop(visit.hello.page, None) is not None:

@@ -345,7 +345,7 @@ def _fields(lab: _Lab, marks: Mapping[str, FieldValue], words: Words) -> dict[st
     if link is not None:
         found = list(_with_link(found, words))
     found += [
-        _switch("show_start", "start.show", words),
+        _switch("show_start", words("start.show"), words("start.show_hint")),
         _button("pulse", words("gains.pulse"), Pulse(), words("gains.pulse_hint")),
         _button("reset", words("start.reset"), Reset()),
         _button("start_on_path", words("start.default"), StartOnPath()),
@@ -356,7 +356,11 @@ def _fields(lab: _Lab, marks: Mapping[str, FieldValue], words: Words) -> dict[st
         *_point_fields(robot, lab.points, words),
         _button("identify", words("gains.identify"), Identify(), words("gains.identify_hint")),
         *_drawing_fields(words),
-        *((_switch("show_zone", "design.zone", words),) if robot.frame.p == 2 else ()),
+        *(
+            (_switch("show_zone", words("design.zone"), words("design.zone_hint")),)
+            if robot.frame.p == 2
+            else ()
+        ),
         FormField(name="view", kind="button", label=words("run.view"), act={"is": "view"}),
     ]
     return {field.name: field for field in found}
@@ -375,10 +379,9 @@ def _button(
     return FormField(name=name, kind="button", label=label, act=act, help=help, needs=conditions)
 
 
-def _switch(name: str, key: str, words: Words) -> FormField:
+def _switch(name: str, label: str, help: str) -> FormField:
     """A switch for something that is drawn and that no lesson names."""
-    hint = words(f"{key}_hint")
-    return FormField(name=name, kind="switch", label=words(key), help=hint, default=False)
+    return FormField(name=name, kind="switch", label=label, help=help, default=False)
 
 
 def _point_fields(robot: Robot, count: int, words: Words) -> Iterator[FormField]:

@@ -30,7 +30,13 @@ _PLAIN = (
     *("breakdown.slowly", "breakdown.end", "breakdown.reset", "invite.skip"),
     *(f"invite.{invitation.name}" for invitation in INVITATIONS),
     *(f"invite.{each.explained}" for each in INVITATIONS if each.explained),
-    *("stage.paused", "invite.hold_button", "invite.let_go_button", "invite.lesson_button"),
+    *(
+        "page.scene",
+        "stage.paused",
+        "invite.hold_button",
+        "invite.let_go_button",
+        "invite.lesson_button",
+    ),
     *SHELL,
 )
 _FILLED = {

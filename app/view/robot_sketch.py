@@ -29,6 +29,4 @@ def robot_sketch(robot: Robot) -> str:
         return np.array(SIZE) / 2 + scale * (points - (low + high) / 2) * [1, -1]
 
     lines, circles = seen(bars).reshape(-1, 4), seen(joints)
-    return render(
-        "panel/robot_sketch.svg", size=SIZE, lines=lines.tolist(), circles=circles.tolist()
-    )
+    return render("web/robot_sketch.svg", size=SIZE, lines=lines.tolist(), circles=circles.tolist())

@@ -18,7 +18,7 @@ from websockets.asyncio.server import ServerConnection
 from websockets.http11 import Request
 
 from onpath.app.common.allowance import Allowance
-from onpath.app.viser_adapter.message_filter import Limits
+from onpath.app.viser_adapter.limits import Limits
 from onpath.assets.messages import preferred
 
 _log = logging.getLogger("websockets.server")

@@ -9,7 +9,7 @@ import viser
 from viser.infra import ClientId
 from websockets.frames import CloseCode
 
-from onpath.app.viser_adapter.message_filter import warn_once
+from onpath.app.viser_adapter.dropped import warn_once
 from onpath.app.viser_adapter.secure_connection import SecureConnection
 
 

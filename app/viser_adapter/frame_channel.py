@@ -82,15 +82,6 @@ class NodeGroup:
             self._api._queue_scene_message(message)
 
 
-def update_gui(handle: Any, name: str, value: str | tuple[np.ndarray, ...]) -> None:
-    """Set a property of a GUI element, without viser's check of its type and of changes.
-
-    Arrays must not be modified afterwards.
-    """
-    setattr(handle._impl.props, name, value)
-    handle._queue_update(name, value)
-
-
 class FrameChannel:
     """Collects the simulation thread's messages to one browser, and sends those of a frame as one.
 
@@ -135,8 +126,6 @@ class FrameChannel:
                 self._loop.call_soon_threadsafe(_write, frames)
 
     def _take(self, message: Message | GroupUpdate) -> None:
-        if message.excluded_self_client == self._client_id:
-            return  # for other browsers with the same page; there are none
         if self._collector == get_ident():
             self._messages.append(message)
         elif not self.closed:  # for example while a page is being built

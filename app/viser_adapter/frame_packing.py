@@ -48,7 +48,6 @@ class GroupUpdate:
 
     group: GroupForm
     numbers: np.ndarray
-    excluded_self_client: None = None
 
     def messages(self) -> list[Message]:
         """The same update as viser's messages, one for each node."""

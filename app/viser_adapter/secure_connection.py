@@ -17,22 +17,18 @@ from websockets.protocol import State
 
 from onpath.app.common.allowance import Allowance
 from onpath.app.viser_adapter.connection_limits import CountedConnection
-from onpath.app.viser_adapter.message_filter import Limits, warn_once
+from onpath.app.viser_adapter.dropped import warn_once
+from onpath.app.viser_adapter.limits import Limits
 from onpath.app.viser_adapter.message_schema import InvalidMessage, MessageSchemas
 
 FROM_BROWSER: tuple[type[Any], ...] = (
     wire.ViewerCameraMessage,
     wire.SceneNodeClickMessage,
     wire.SceneNodeDragMessage,
-    wire.GuiUpdateMessage,
-    wire.CommandTriggerMessage,
     wire.LocalStorageGetItemResponseMessage,
-    wire.FileTransferStartUpload,
-    wire.FileTransferPart,
 )
-CHANGES = (wire.SceneNodeDragMessage, wire.GuiUpdateMessage)
-"""Messages that may make a lab compute; the rate of each kind is limited."""
-GESTURES = (wire.ViewerCameraMessage, *CHANGES)
+"""What a browser may send; viser's pages have no widgets, whose messages are refused, too."""
+GESTURES = (wire.ViewerCameraMessage, wire.SceneNodeDragMessage)
 """Messages handled at once: a browser may send many in a row, and their handlers never wait."""
 LONG = 4096  # [B]; a message counts once more for every so many bytes
 _DATA = (Opcode.TEXT, Opcode.BINARY, Opcode.CONT)
@@ -120,9 +116,7 @@ class SecureConnection(CountedConnection):
         super().__init__(*args, **kwargs)
         self._limits, self._forms = limits, _forms(limits.max_magnitude)
         self._allowance = Allowance(limits.message_burst, limits.messages_per_second)
-        self._changes = {
-            kind: Allowance(limits.change_burst, limits.changes_per_second) for kind in CHANGES
-        }
+        self._drags = Allowance(limits.change_burst, limits.changes_per_second)
         self._commands = Allowance(limits.change_burst, limits.changes_per_second)
         self._closing: asyncio.Task[None] | None = None
         self._unfinished = unfinished
@@ -195,8 +189,7 @@ class SecureConnection(CountedConnection):
             InvalidMessage: the message is invalid, or there were too many of its kind.
         """
         message = self._forms.decoded(raw)
-        allowance = self._changes.get(type(message))
-        if allowance is not None and not allowance.take():
+        if isinstance(message, wire.SceneNodeDragMessage) and not self._drags.take():
             self._close_flood(f"{self._limits.changes_per_second:g} changes")
             raise InvalidMessage("a flood of changes")
         return message

@@ -1,8 +1,9 @@
 """Protects a viser server from untrusted browsers.
 
-Data from a browser passes the handshake (request_filter.py), the websocket (secure_connection.py:
-size and rate; message_schema.py: fields and types), message_filter.py (which widget) and
-widget_validation.py (which value). Exceptions in callbacks are logged (error_log.py).
+Data from a browser passes the handshake (request_filter.py) and the websocket
+(secure_connection.py: size, rate and kind; message_schema.py: fields and types). A page has no
+widgets of viser's, so messages about widgets and files are dropped like all that no browser may
+send. Exceptions in callbacks are logged (error_log.py).
 """
 
 from __future__ import annotations
@@ -20,9 +21,9 @@ from typing import Any
 
 import viser
 import websockets.asyncio.server
-from viser import _gui_api, _gui_handles, _scene_api, _viser
 from viser import _messages as wire
-from viser.infra import ClientId, WebsockClientConnection
+from viser import _scene_api, _viser
+from viser.infra import ClientId, WebsockClientConnection, WebsockMessageHandler
 from websockets.frames import CloseCode
 from websockets.http11 import Request, Response
 from websockets.typing import Subprotocol
@@ -32,9 +33,8 @@ from onpath.app.viser_adapter.addresses import not_here, prefix_of, redirection,
 from onpath.app.viser_adapter.connection_limits import ConnectionLimits, Proxies
 from onpath.app.viser_adapter.connections import connection_of
 from onpath.app.viser_adapter.data_channel import FAMILY, SUBPROTOCOL, DataChannel
-from onpath.app.viser_adapter.file_uploads import FileUploads
+from onpath.app.viser_adapter.limits import Limits
 from onpath.app.viser_adapter.message_event import let_threads_send
-from onpath.app.viser_adapter.message_filter import Limits, MessageFilter
 from onpath.app.viser_adapter.page_scripts import add_scripts
 from onpath.app.viser_adapter.request_filter import (
     RequestFilter,
@@ -126,14 +126,14 @@ def make_server(
         shown = f"[{host}]" if ":" in host else host  # in the addresses that viser prints
         server = viser.ViserServer(host=shown, port=port, label=label, verbose=verbose)
     listener.listen(BACKLOG)  # so many may wait in the system, even if fewer are accepted at once
-    harden(server, limits=limits)
+    harden(server)
     prepare(server)
     door.open = True
     return server
 
 
-def harden(server: viser.ViserServer, *, limits: Limits = Limits()) -> None:
-    """Filter the decoded messages of all future clients. Call it once, before the first one.
+def harden(server: viser.ViserServer) -> None:
+    """Handle the gestures of all future clients at once. Call it once, before the first one.
 
     `make_server` does this and adds the checks before decoding, which must be installed while viser
     constructs its server.
@@ -142,24 +142,32 @@ def harden(server: viser.ViserServer, *, limits: Limits = Limits()) -> None:
     for message in _SHARE_TUNNEL:
         websock.unregister_handler(message)
     _log_errors_of_callbacks(server)
-    uploads = FileUploads(limits.max_upload_bytes)
 
     def guard(connection: WebsockClientConnection) -> None:
         let_threads_send(connection)
-        handler: Any = connection._incoming_handlers[wire.GuiUpdateMessage][0]
-        of_client = MessageFilter(server, connection, handler.__self__, limits, uploads)
         client = ClientId(connection.client_id)
 
         def handle(message: Any) -> None:
-            for message_filter in (of_server, of_client):
-                message_filter.receive(client, message)
+            for scope in (websock, connection):
+                _handle_at_once(scope, client, message)
 
         if (secured := connection_of(server, client)) is not None:
             secured.handle = handle
 
     let_threads_send(websock)
-    of_server = MessageFilter(server, websock, server.gui, limits, uploads)
     websock.on_client_connect(guard)
+
+
+def _handle_at_once(scope: WebsockMessageHandler, client: ClientId, message: Any) -> None:
+    """Handle a message whose handlers do not wait."""
+    handling = scope._handle_incoming_message(client, message)
+    try:
+        handling.send(None)
+        handling.throw(RuntimeError(f"a handler of {type(message).__name__} waits"))
+    except StopIteration:
+        return
+    except Exception as error:
+        log_error(error)
 
 
 Answer = Callable[[SecureConnection, Request], Awaitable[Response | None]]
@@ -323,7 +331,7 @@ def _log_outcome(done: Any) -> None:
 
 def _log_errors_of_callbacks(server: viser.ViserServer) -> None:
     """Log exceptions in callbacks, which viser prints. This patches viser for the whole process."""
-    for module in (_gui_api, _gui_handles, _scene_api, _viser):
+    for module in (_scene_api, _viser):
         for name, log in _PRINTERS.items():
             if hasattr(module, name):
                 setattr(module, name, log)

@@ -16,25 +16,13 @@ from onpath.app.common.error_log import log_warning
 TESTED = "1.1.1"
 PAGE = "client/build/index.html"
 TESTED_PAGE = "8c05b8bfea1ed54773a7616d1d868ebf0b45055ff8da8fc1603ccb2a7858f079"
-"""SHA-256 of viser's page, whose elements and class names assets/page relies on."""
+"""SHA-256 of viser's page, on whose canvas and worker our scripts rely."""
 TOUCHED = {
     "_assignable_props_api.py": "AssignablePropsBase _impl _prop_hints",
-    "_gui_api.py": (
-        "_children _command_handle_from_uuid _container_handle_from_uuid"
-        " _current_file_upload_states _gui_input_handle_from_uuid _modal_handle_from_uuid"
-        " _panel_handle_from_uuid _restore_container_context _set_container_uuid"
-        " _snapshot_container_context _websock_interface print_threadpool_errors svg_from_icon"
-    ),
-    "_gui_handles.py": (
-        "UploadedFile _impl _queue_update parent_container_id print_task_error removed"
-        " svg_from_icon sync_cb trigger_cb update_cb"
-    ),
-    "_icons.py": "ICONS_DIR svg_from_icon",
     "_messages.py": (
-        "CommandTriggerMessage FileTransferPart FileTransferPartAck FileTransferStartUpload"
-        " GuiUpdateMessage ImageMessage ImageProps"
-        " LocalStorageGetItemRequestMessage LocalStorageGetItemResponseMessage Message"
-        " SceneNodeClickMessage SceneNodeDragMessage SceneNodeUpdateMessage SetCameraFovMessage"
+        "ImageMessage ImageProps LocalStorageGetItemRequestMessage"
+        " LocalStorageGetItemResponseMessage Message SceneNodeClickMessage"
+        " SceneNodeDragMessage SceneNodeUpdateMessage SetCameraFovMessage"
         " SetCameraLookAtMessage SetCameraPositionMessage SetCameraUpDirectionMessage"
         " SetPositionMessage ShareUrlDisconnect ShareUrlRequest ViewerCameraMessage"
     ),
@@ -45,20 +33,20 @@ TOUCHED = {
     ),
     "_scene_handles.py": "_impl _make click_cb drag_cb",
     "_viser.py": (
-        "_event_loop _initial_camera _scene_lifecycle_lock _state _thread_executor _viser_server"
-        " _websock_connection _websock_server print_awaited_callback_error print_task_error"
-        " print_threadpool_errors"
+        "_event_loop _initial_camera _scene_lifecycle_lock _state _thread_executor"
+        " _viser_server _websock_connection _websock_server print_awaited_callback_error"
+        " print_task_error print_threadpool_errors"
     ),
     "infra/_async_message_buffer.py": (
         "AsyncMessageBuffer buffer_lock id_from_redundancy_key ids_from_entity_state_key"
         " message_event message_from_id"
     ),
     "infra/_infra.py": (
-        "WebsockClientConnection WebsockMessageHandler WebsockServer _append_aligned_buffers"
-        " _broadcast_buffer _handle_incoming_message _incoming_handlers _live_connections"
-        " _record_handles _state"
+        "WebsockClientConnection WebsockMessageHandler WebsockServer"
+        " _append_aligned_buffers _broadcast_buffer _handle_incoming_message"
+        " _incoming_handlers _live_connections _record_handles _state"
     ),
-    "infra/_messages.py": "deserialize excluded_self_client",
+    "infra/_messages.py": "deserialize",
 }
 """Names in viser's modules, by file."""
 

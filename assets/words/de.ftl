@@ -90,10 +90,6 @@ lesson-tasks =
     }
 lesson-needs = Du brauchst:
 lesson-goals = Danach kannst du:
-lesson-open = Lektion { $number } öffnen
-lesson-open_name = Lektion { $number } öffnen: { $title }
-lesson-continue = Lektion { $number } fortsetzen
-lesson-continue_name = Lektion { $number } fortsetzen: { $title }
 lesson-close = Freies Labor
 lesson-back = Zurück
 lesson-wait = Die Klasse wartet hier, bis die Lehrkraft weitergeht.
@@ -131,7 +127,6 @@ lesson-next_unseen = Weiter, ohne es zu sehen
 lesson-passed = Geschafft
 lesson-passed_best = Geschafft; dein bester Wert: { $best } { $unit }
 lesson-hint = Hinweis (noch { $left })
-lesson-this_step = Dieser Schritt
 lesson-controls = Einstellungen
 lesson-all_controls = Alle Einstellungen
 lesson-language = Sprache
@@ -201,7 +196,6 @@ keep-until =
 keep-other = Anderer Code
 keep-other_hint = Der Code eines Labors, das du anderswo begonnen hast
 keep-go = In jenem Labor weitermachen
-keep-moment = Einen Moment …
 keep-share = Diesen Aufbau teilen
 keep-shared = Schicke diesen Code: Er enthält Roboter, Bahn, Verstärkungen und Realismus.
 keep-paste = Geteilter Code
@@ -232,7 +226,6 @@ full-before =
 
 test-title_before = Vor dem Kurs: { $title }
 test-title_after = Nach dem Kurs: { $title }
-test-open = Test öffnen
 test-open_name = Test öffnen: { $title }
 test-hand_in = Abgeben
 test-handed_in = abgegeben
@@ -316,9 +309,7 @@ class-free = Freies Labor
 class-nobody = Noch ist niemand beigetreten.
 class-follow = Zusehen bei
 class-own_lab = Mein eigenes Labor
-class-rename = Umbenennen
 class-rename_hint = Höchstens 24 Zeichen; die Person sieht ihn auch
-class-renamed = Umbenannt.
 class-remove = Aus der Klasse nehmen
 class-removed = Herausgenommen. Das Labor geht ohne die Klasse weiter und kann wieder beitreten.
 class-delete = Diese Person löschen
@@ -333,7 +324,6 @@ class-push_setup = Meinen Aufbau an alle senden
 class-push_code = Diesen Code an alle senden
 class-push_step = Diesen Schritt bei allen öffnen
 class-back = Zurück für alle
-class-next = Weiter für alle
 class-next_step = Weiter für alle: { $step }
 class-sent =
     { $count ->
@@ -506,12 +496,6 @@ connect-forbidden = Dieses Labor lässt Seiten von { $origin } nicht zu. Öffne 
 connect-refused = Das Labor weist diese Seite immer wieder ab. Lade die Seite neu; wenn das nicht hilft, sag dem, der das Labor betreibt, dass sein Proxy eine Seite vielleicht zu mehreren Prozessen leitet.
 connect-version = Das Labor hat jetzt eine andere Version. Lade die Seite neu; dein Labor hat alles behalten.
 page-scene = Zwei Roboter, die einer Bahn folgen, von vorn gesehen. Was sie tun, wird laufend angesagt; die Tasten des Labors stehen unter „Hilfe und Tasten“.
-page-keys = Alle Befehle
-page-fold = Bedienfeld einklappen
-number-none = „{ $typed }“ ist keine Zahl. Der Wert ist noch { $value }; 0,5 und 1e9 sind Zahlen.
-number-changed = „{ $typed }“ ist hier nicht möglich: Jetzt ist es { $value }.
-number-grouped = „{ $typed }“ ist als { $value } gelesen worden: Tausend ist 1000, ohne Zeichen zwischen den Ziffern.
-number-empty = Ein leeres Feld behält seinen Wert: { $value }.
 
 spoken-running = Läuft.
 spoken-paused = Pause.
@@ -568,10 +552,7 @@ scene-force = Kraft { $force } N
 scene-true_scale = maßstäblich
 scene-larger = Durchbiegung { $factor }× gezeichnet
 
-robots-button = Roboter…
-robots-hint = Jetzt: { $robot }. Wähle einen anderen; jeder behält seine Bahn und seine Einstellungen.
 robots-choose = Wähle einen Roboter
-robots-this = { $robot } (dieser)
 
 laws-left = Regelgesetz links
 laws-right = Regelgesetz rechts
@@ -580,7 +561,6 @@ laws-own = Eigenes Gesetz…
 laws-own_left = Eigenes Gesetz links
 laws-own_right = Eigenes Gesetz rechts
 laws-own_hint = Die Eingabetaste setzt das Gesetz ein; mit der Umschalttaste beginnt sie eine neue Zeile
-laws-use = Dieses Gesetz einsetzen
 laws-about = Über die Regelgesetze
 laws-bounds = Das Integral jedes Gesetzes ist begrenzt: K3 verschiebt das Gleichgewicht um höchstens { $reach } mm, sodass keine Hand es aufziehen kann. Gesetze, die der Bahn über ihren nächsten Punkt folgen, kehren dort, wo auf diesen Punkt kein Verlass ist, allein mit K1 und K2 geradewegs zurück: ab dem halben Krümmungsradius auf der Innenseite, ganz ab vier Fünfteln, wo sie sich von der Messung bis zum Drehmoment um 0,15 bis 0,3 rad mehr drehen als gewünscht, und 5 bis 20 mm jenseits eines offenen Endes.
 laws-source = Quelle: { $source }
@@ -610,26 +590,11 @@ controls-help = Hilfe und Tasten
 ## Die Wand und der Start
 
 wall-title = Wand
-wall-switch = Eine Wand im Weg
-wall-hint = Jeder Roboter hat seine eigene, an derselben Stelle. Auf ihrer schraffierten Seite drückt sie wie eine steife Feder, { $stiffness } N für jeden Millimeter und höchstens { $most } N, und zieht nie. Zieh sie in der Szene; zieh an einem gelben Ende, um sie zu drehen. Tasten: M, I J K L, T, V
-wall-place = Wand { $name } [mm]
-wall-angle = Normale [°]
-wall-angle_hint = Richtung der freien Seite, gegen den Uhrzeigersinn von rechts aus: 90 ist oben
 wall-forces = Kraft auf die Wand
 
 start-title = Start
 start-show = Zeigen, um ihn zu ziehen
 start-show_hint = Eine grüne Kugel in der Szene: Dort beginnt der nächste Lauf; ihr Pfeil ist die Geschwindigkeit
-start-theta = Längs der Bahn [°]
-start-theta_hint = θ des Bahnpunktes, bei dem der Roboter beginnt
-start-beside = Neben der Bahn [mm]
-start-beside_hint = Abstand nach links von der Bahn; negativ: nach rechts
-start-along = Tempo längs [mm/s]
-start-along_hint = Geschwindigkeit der Spitze längs der Bahn
-start-across = Tempo quer [mm/s]
-start-across_hint = Geschwindigkeit der Spitze quer zur Bahn, nach links
-start-clock_offset = Uhr voraus [°]
-start-clock_offset_hint = Wie weit der Sollpunkt eines Gesetzes mit Uhr dem nächsten Bahnpunkt voraus ist
 start-reset = Dort beginnen
 start-default = Auf der Bahn
 
@@ -640,7 +605,6 @@ design-path_hint = Beide Roboter folgen ihr. Ziehe an ihren Punkten im Bild, um 
 design-own = eine eigene Bahn
 design-refused = { $path } (wird abgelehnt)
 design-ambiguous = { $path } (kreuzt sich)
-design-draw = Freihändig zeichnen
 design-draw_hint = Zeichne dann mit der Maus oder dem Finger einen Strich um einen der Roboter. Endet er nahe an seinem Anfang, ist die Bahn geschlossen. Noch einmal drücken beendet das Zeichnen.
 design-files = Aus einer Datei
 design-size = Größe [mm]
@@ -653,18 +617,14 @@ design-upload = Datei wählen
 design-upload_hint = Punkte (CSV), eine Zeichnung (SVG) oder G-Code, höchstens { $most } MB. Von mehreren Linien wird die längste genommen.
 design-reading = Die Datei wird gelesen.
 design-followed = Die Roboter folgen { $file }. Änderungen von Größe, Ecken und Ende wirken sofort darauf, bis du dies schließt.
-design-edit = Ändern
 design-undo = Rückgängig
 design-redo = Wiederholen
-design-point = Punkt
 design-add = Einfügen
 design-remove = Entfernen
 design-selected = Ausgewählt
-design-selected_hint = Nummer des Kontrollpunkts; 0: keiner
 design-no_point = keiner
 design-coordinate = { $name } [mm]
 design-arrows = Pfeiltasten schieben den ausgewählten Punkt um 1 mm; N wählt den nächsten. Um einen Punkt zu ziehen, den die Spitze verdeckt, wähle ihn zuerst aus.
-design-slanted = Die Bahn liegt in der Ebene y₁ = b y₂ + d von (23). Was in (y₂, y₃) ein Kreis ist, ist im Raum eine Ellipse, wie im Artikel. Ihre Mitte liegt bei y₂ = 0 und der Höhe unten; die des Artikels, y₃ = ℓ₁, liegt außer Reichweite dieses Arms. Mit einer anderen Ebene beginnt der Lauf neu.
 design-slanted_circle = Ellipse von (23)
 design-rank = Rangtest (11) längs der Bahn: mindestens { $number } von 1.
 design-zone = Singuläre Zone zeigen
@@ -672,15 +632,12 @@ design-zone_hint = Wo der Arm gestreckt oder gefaltet ist, Gl. (14)
 
 ## Verstärkungen und Realismus
 
-gains-advanced = Weitere
 gains-defaults = Auf Anfangswerte
 gains-realism = Realismus
-gains-ideal = Alles aus: ein idealer Roboter und ein genaues Modell. *Werte nur als Beispiel.*
 gains-across = Quer
 gains-along = Längs
 gains-pulse = Prüfstoß
 gains-pulse_hint = Zieht beide Spitzen eine Achtelsekunde lang quer zur Bahn und zeigt so, was die Verstärkungen bewirken
-gains-plane = Die Pole in der Ebene: { $names }. Links der Achse klingt eine Bewegung ab, rechts von ihr wächst sie an.
 gains-rate = Abklingen [1/s]
 gains-swing = Schwingen [rad/s]
 gains-poles = Pole { $poles } 1/s
@@ -694,9 +651,7 @@ flexible-title = Biegsamer Balken
 flexible-pull = Zugebene
 flexible-pull_hint = Die Ebene durch die Spitze, in der die Maus an ihr zieht
 flexible-beam = Balken und Regelstrecke
-flexible-anew = Mit einer anderen Regelstrecke oder Modenzahl beginnen die Roboter neu. Werte nur als Beispiel.
 flexible-composite = Zusammengesetzte Regelung
-flexible-alpha = α = { $alpha }; { $limit }
 flexible-computing = kritisches α: wird berechnet
 flexible-none = kritisches α: keines bis 1
 flexible-critical = kritisches α = { $critical }, hier und in Ruhe
@@ -706,7 +661,6 @@ flexible-of_beam =
         [one] 1 Mode
        *[other] { $modes } Moden
     }, jede mit ζ = { $zeta }
-flexible-unused = die zusammengesetzte Regelung bringt die Spitze selbst auf die Bahn und braucht kein α
 flexible-unstable = Nulldynamik instabil
 flexible-deflections = Durchbiegung: { $each }; { $scale }
 flexible-deflection = { $robot } { $value } mm
@@ -717,7 +671,6 @@ pull-horizontal-plane = waagerechte Ebene
 
 ## Was auf Wunsch in der Szene gezeigt wird
 
-show-title = Zeigen
 show-labels = Namen, Achsen
 show-labels_hint = Winkel q, Längen ℓ und die Achsen von y, wie in den Bildern 1 und 4 des Artikels
 show-tube = Schlauch
@@ -792,7 +745,6 @@ export-nothing = Es gibt noch nichts zu exportieren: Lass es erst laufen.
 
 compare-title = Regelungen vergleichen
 compare-text = Für alle derselbe Roboter, dieselbe Bahn, dasselbe Tempo und dieselben Verstärkungen, und ein Hindernis. Das gewünschte Tempo bleibt gleich. Gerechnet wird im Hintergrund, mit den jetzigen Einstellungen dieses Labors; es läuft weiter.
-compare-own_hint = Das Gesetz, das für diesen Roboter eingegeben ist, so wie es zu Beginn des Vergleichs lautet
 compare-obstruction = Hindernis
 compare-run = Vergleichen
 compare-count = Wähle ein bis { $most } Regelungen aus.
@@ -887,10 +839,6 @@ glossary-to_terms = Glossar: von den Wörtern der Lektionen zu den Fachwörtern
 glossary-to_words = Glossar: von den Fachwörtern zu den Wörtern der Lektionen
 glossary-lesson = (Lektion { $number })
 help-close = Schließen
-help-text =
-    Drücke **Beide festhalten** und sieh zu: Der linke Roboter (orange) wird mit der
-    Nachlaufregelung von der Bahn gerissen, denn sein Punkt läuft nach der Uhr weiter. Der rechte (blau)
-    wartet mit der Bahnfolgeregelung auf der Bahn und geht weiter, wenn du loslässt.
 
     - **Fasse eine Spitze** und ziehe daran. Mit *Für beide* geht die andere denselben Weg.
     - **Ziehe an einer kleinen grauen Kugel**, um die Bahn zu verbiegen, während es läuft.
@@ -948,7 +896,6 @@ identified-other_robot = Identifizieren lässt sich nur das Fünfgelenk: Wähle 
 route-route = Route
 route-send = Diese Route für alle öffnen
 route-follow = Dieser Route folgen
-route-follow_name = Dieser Route folgen: { $title }
 route-stop = { $lesson }, Schritte { $first } bis { $last }, { $minutes } min
 route-here = { $route }: Teil { $stop } von { $stops }, bis Schritt { $last }, { $minutes } min
 

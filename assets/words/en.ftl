@@ -92,10 +92,6 @@ lesson-tasks =
     }
 lesson-needs = You need:
 lesson-goals = Afterwards you can:
-lesson-open = Open lesson { $number }
-lesson-open_name = Open lesson { $number }: { $title }
-lesson-continue = Go on with lesson { $number }
-lesson-continue_name = Go on with lesson { $number }: { $title }
 lesson-close = Free lab
 lesson-back = Back
 lesson-wait = The class waits here until the teacher goes on.
@@ -133,7 +129,6 @@ lesson-next_unseen = Next, without seeing it
 lesson-passed = Passed
 lesson-passed_best = Passed; your best: { $best } { $unit }
 lesson-hint = Hint ({ $left } left)
-lesson-this_step = This step
 lesson-controls = Controls
 lesson-all_controls = All controls
 lesson-language = Language
@@ -203,7 +198,6 @@ keep-until =
 keep-other = Another code
 keep-other_hint = The code of a lab that you began elsewhere
 keep-go = Go to that lab
-keep-moment = One moment…
 keep-share = Share this set-up
 keep-shared = Send this code: it contains the robot, the path, the gains and the realism settings.
 keep-paste = Share code
@@ -234,7 +228,6 @@ full-before =
 
 test-title_before = Before the course: { $title }
 test-title_after = After the course: { $title }
-test-open = Open the test
 test-open_name = Open the test: { $title }
 test-hand_in = Hand in
 test-handed_in = handed in
@@ -318,9 +311,7 @@ class-free = Free lab
 class-nobody = Nobody has joined yet.
 class-follow = Follow
 class-own_lab = My own lab
-class-rename = Rename
 class-rename_hint = At most 24 characters; the student sees it, too
-class-renamed = Renamed.
 class-remove = Remove from the class
 class-removed = Removed. The lab goes on without the class, and can join again.
 class-delete = Delete this student
@@ -335,7 +326,6 @@ class-push_setup = Send my set-up to all
 class-push_code = Send this share code to all
 class-push_step = Open this step for all
 class-back = Back for all
-class-next = Next for all
 class-next_step = Next for all: { $step }
 class-sent =
     { $count ->
@@ -421,12 +411,6 @@ connect-forbidden = This lab does not let pages of { $origin } connect. Open it 
 connect-refused = The lab keeps refusing this page. Load the page again; if that does not help, tell whoever runs the lab that its proxy may lead one page to several processes.
 connect-version = The lab has another version now. Load the page again; your lab has kept everything.
 page-scene = Two robots that follow a path, seen from the front. What they do is announced as it happens; the keys of the lab are under “Help and keys”.
-page-keys = All commands
-page-fold = Collapse the controls
-number-none = “{ $typed }” is not a number. The value is still { $value }; 0.5 and 1e9 are numbers.
-number-changed = “{ $typed }” is not possible here: it is { $value } now.
-number-grouped = “{ $typed }” was read as { $value }: write a thousand as 1000, without a mark between its digits.
-number-empty = An empty box keeps its value: { $value }.
 
 spoken-running = Running.
 spoken-paused = Paused.
@@ -483,10 +467,7 @@ scene-force = force { $force } N
 scene-true_scale = true scale
 scene-larger = deflection drawn { $factor }×
 
-robots-button = Robot…
-robots-hint = Now: { $robot }. Choose another; each keeps its path and settings.
 robots-choose = Choose a robot
-robots-this = { $robot } (this one)
 
 laws-left = Law, left
 laws-right = Law, right
@@ -495,7 +476,6 @@ laws-own = Own law…
 laws-own_left = Own law, left
 laws-own_right = Own law, right
 laws-own_hint = Enter uses the law; Shift and Enter begin a new line
-laws-use = Use this law
 laws-about = About the laws
 laws-bounds = Every law's integral is limited: K3 moves the balance by at most { $reach } mm, so that no hand can wind it up. Laws that follow the path by its closest point return straight to it, with K1 and K2 alone, where that point is not to be trusted: half of the radius of curvature away on the inner side, fully from four fifths on, where they turn 0.15 to 0.3 rad more than wanted in the time from measurement to torque, and 5 to 20 mm past an open end.
 laws-source = Source: { $source }
@@ -525,26 +505,11 @@ controls-help = Help and keys
 ## The wall and the start
 
 wall-title = Wall
-wall-switch = A wall in the way
-wall-hint = Each robot has its own, at the same place. On its hatched side it pushes like a stiff spring, { $stiffness } N for each millimetre and at most { $most } N, and never pulls. Drag it in the scene; drag a yellow end to turn it. Keys: M, I J K L, T, V
-wall-place = Wall { $name } [mm]
-wall-angle = Normal [°]
-wall-angle_hint = Direction of the free side, counter-clockwise from the right: 90 is up
 wall-forces = Force on the wall
 
 start-title = Start
 start-show = Show it, to drag it
 start-show_hint = A green ball in the scene: where the next run starts; its arrow is the velocity
-start-theta = Along the path [°]
-start-theta_hint = θ of the point of the path next to which the robot starts
-start-beside = Beside the path [mm]
-start-beside_hint = Distance to the left of the path; negative: to the right
-start-along = Speed along [mm/s]
-start-along_hint = Velocity of the end-point along the path
-start-across = Speed across [mm/s]
-start-across_hint = Velocity of the end-point across the path, to the left
-start-clock_offset = Clock ahead [°]
-start-clock_offset_hint = How far the reference point of a law with a clock is ahead of the closest point
 start-reset = Reset to it
 start-default = On the path
 
@@ -555,7 +520,6 @@ design-path_hint = Both robots follow it. Drag its points in the scene to bend i
 design-own = a path of your own
 design-refused = { $path } (is refused)
 design-ambiguous = { $path } (crosses itself)
-design-draw = Draw freehand
 design-draw_hint = Then draw one stroke around a robot, with the mouse or a finger. If it ends near its beginning, the path is closed. Press again to cancel.
 design-files = From a file
 design-size = Size [mm]
@@ -568,18 +532,14 @@ design-upload = Choose a file
 design-upload_hint = Points (CSV), a drawing (SVG) or G-code, at most { $most } MB. Of several lines, the longest is taken.
 design-reading = The file is being read.
 design-followed = The robots follow { $file }. Changes of size, corners and end act on it at once, until you close this.
-design-edit = Edit
 design-undo = Undo
 design-redo = Redo
-design-point = Point
 design-add = Add
 design-remove = Remove
 design-selected = Selected
-design-selected_hint = Number of the control point; 0: none
 design-no_point = none
 design-coordinate = { $name } [mm]
 design-arrows = The arrow keys move the selected point by 1 mm; N selects the next one. To drag a point that the end-point covers, select it first.
-design-slanted = The path lies in the plane y₁ = b y₂ + d of (23). A circle in (y₂, y₃) is an ellipse in space, as in the paper. Its centre is at y₂ = 0 and the height below; the paper's, y₃ = ℓ₁, is out of this arm's reach. With another plane the run begins anew.
 design-slanted_circle = ellipse of (23)
 design-rank = Rank test (11) along the path: at least { $number } of 1.
 design-zone = Show singular zone
@@ -587,15 +547,12 @@ design-zone_hint = Where the arm is stretched or folded, eq. (14)
 
 ## Gains and realism; the names of the parameters themselves stand in models/
 
-gains-advanced = Advanced
 gains-defaults = Reset to defaults
 gains-realism = Realism
-gains-ideal = All off: an ideal robot and an exact model. *Values illustrative.*
 gains-across = Across
 gains-along = Along
 gains-pulse = Test pulse
 gains-pulse_hint = Pulls both end-points across the path for an eighth of a second, to show what the gains do
-gains-plane = The poles in the plane: { $names }. Left of the axis a motion decays, right of it, it grows.
 gains-rate = decay [1/s]
 gains-swing = swing [rad/s]
 gains-poles = poles { $poles } 1/s
@@ -609,9 +566,7 @@ flexible-title = Flexible link
 flexible-pull = Pull in
 flexible-pull_hint = The plane, through the tip, in which the mouse pulls it
 flexible-beam = Beam and plant
-flexible-anew = Changing the plant or the modes restarts the robots. Values illustrative.
 flexible-composite = Composite control
-flexible-alpha = α = { $alpha }; { $limit }
 flexible-computing = critical α: being computed
 flexible-none = critical α: none up to 1
 flexible-critical = critical α = { $critical }, here and at rest
@@ -621,7 +576,6 @@ flexible-of_beam =
         [one] 1 mode
        *[other] { $modes } modes
     }, each with ζ = { $zeta }
-flexible-unused = composite control puts the tip itself on the path and needs no α
 flexible-unstable = zero dynamics unstable
 flexible-deflections = Deflection: { $each }; { $scale }
 flexible-deflection = { $robot } { $value } mm
@@ -632,7 +586,6 @@ pull-horizontal-plane = horizontal plane
 
 ## What is shown in the scene on demand
 
-show-title = Show
 show-labels = Labels, axes
 show-labels_hint = Angles q, lengths ℓ and the axes of y, as in the paper's figures 1 and 4
 show-tube = Tube
@@ -707,7 +660,6 @@ export-nothing = There is nothing to export yet: let it run first.
 
 compare-title = Compare laws
 compare-text = The same robot, path, speed and gains for all, and one obstruction. The wanted speed is constant. The robots are simulated in the background, with the parameters that this lab has now; your lab goes on.
-compare-own_hint = The law that is typed for this robot, as it is when the comparison begins
 compare-obstruction = Obstruction
 compare-run = Compare
 compare-count = Choose one to { $most } laws.
@@ -800,9 +752,6 @@ glossary-to_terms = Glossary: from the lessons' words to the field's terms
 glossary-to_words = Glossary: from the field's terms to the lessons' words
 glossary-lesson = (Lesson { $number })
 help-close = Close
-help-text = **Hold both back** and watch: under trajectory tracking, the left robot (orange) is torn
-    off its path, because its point runs on by the clock. Under path following, the right one (blue)
-    waits on its path and continues when you let go.
 
     - **Drag an end-point** to pull it. *Copy to both* pulls the other one by the same amount.
     - **Drag a small grey ball** to bend the path while the robots run.
@@ -825,7 +774,6 @@ help-text = **Hold both back** and watch: under trajectory tracking, the left ro
 route-route = Route
 route-send = Open this route for all
 route-follow = Follow this route
-route-follow_name = Follow this route: { $title }
 route-stop = { $lesson }, steps { $first } to { $last }, { $minutes } min
 route-here = { $route }: part { $stop } of { $stops }, to step { $last }, { $minutes } min
 

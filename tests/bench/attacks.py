@@ -24,7 +24,7 @@ from websockets.frames import Opcode
 
 from onpath.app.channel.sheet_messages import SheetName
 from onpath.app.viser_adapter.data_channel import SUBPROTOCOL as DATA
-from onpath.app.viser_adapter.message_filter import Limits
+from onpath.app.viser_adapter.limits import Limits
 from onpath.models.systems.catalogue import ROBOTS
 from tests.bench.client_protocol import CAMERA, SUBPROTOCOL, packed
 from tests.bench.dear_commands import dear_message

@@ -18,7 +18,7 @@ import msgspec
 
 from onpath.app.server.admission_queue import RESERVED
 from onpath.app.simulation.metrics import LONGEST, Metrics
-from onpath.app.viser_adapter.message_filter import Limits
+from onpath.app.viser_adapter.limits import Limits
 from tests.bench.processor import Processor, watched_processor
 from tests.bench.server_process import Server, serving
 from tests.bench.simulated_browser import Observations

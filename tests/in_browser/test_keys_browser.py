@@ -88,7 +88,7 @@ def camera(tab: Tab) -> np.ndarray:
 
 def settled_camera(tab: Tab) -> np.ndarray:
     """Position and target of the camera once neither the lab nor the page places it anew."""
-    wait_for(lambda: not tab.display.page._settling)  # type: ignore[attr-defined]
+    wait_for(lambda: not tab.display.scene._settling)  # type: ignore[attr-defined]
     placed = camera(tab)
     for _ in range(20):
         tab.settle()

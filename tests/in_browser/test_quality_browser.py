@@ -62,8 +62,8 @@ def tab(browser: Browser, server: LabServer, renderer: str) -> Iterator[Tab]:
 def test_the_scene_is_as_fine_as_the_browser_can_draw_it(tab: Tab, renderer: str) -> None:
     is_plain = RENDERERS.get(renderer, True)  # that of the tests draws in software
     assert isinstance(tab.display, LabFeed)
-    assert tab.display.page is not None
-    assert tab.display.page._scene.stage.plain == is_plain
+    assert tab.display.scene is not None
+    assert tab.display.scene._scene.stage.plain == is_plain
     assert tab.page.evaluate(SMOOTHED)["antialias"] == (not is_plain)
     assert ("MeshToonMaterial" in tab.page.evaluate(MATERIALS)) == is_plain
     assert not tab.page.get_by_text("Software WebGL").filter(visible=True).count()

@@ -8,7 +8,7 @@ import pytest
 
 from onpath.app.cli.main import run_command
 from onpath.app.lab.lesson_state import LessonState
-from onpath.app.page.lesson_html import entry
+from onpath.app.view.lessons import lesson_card
 from onpath.lessons.course import read_course
 from onpath.lessons.formulas import to_html
 from onpath.lessons.minutes import (
@@ -71,7 +71,8 @@ def test_the_estimate_is_listed_and_on_the_card(
     course, found = read_course([tmp_path])
     lesson = course.lesson("01-a", "en")
     assert found == [] and lesson_minutes(lesson) == (round(spent(tmp_path).total), 0)
-    assert f"{lesson_minutes(lesson)[0]} min" in entry(lesson, LessonState(course), "1")
+    minutes, *_ = lesson_card(lesson, LessonState(course), "1").facts
+    assert f"{lesson_minutes(lesson)[0]} min" in minutes
     assert run_command(["lessons", "list", str(tmp_path), "--steps"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert float(lines[1].split()[1]) == pytest.approx(spent(tmp_path).total, abs=0.051)
@@ -89,7 +90,7 @@ def test_optional_steps_are_counted_apart(
     assert found == [] and lesson.steps[-1].optional and last > 0
     assert required_minutes(lesson).total == pytest.approx(whole - last)
     assert optional_minutes(lesson).total == pytest.approx(last)
-    assert "optional" in entry(lesson, LessonState(course), "1")
+    assert "optional" in lesson_card(lesson, LessonState(course), "1").facts[1]
     assert run_command(["lessons", "list", str(tmp_path), "--steps"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert float(lines[1].split()[1]) == pytest.approx(whole - last, abs=0.051)

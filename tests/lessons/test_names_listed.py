@@ -5,7 +5,6 @@ from __future__ import annotations
 import pytest
 
 from onpath.app.cli.main import run_command
-from onpath.app.page.panels.show_panel import SWITCHES
 from onpath.lessons.record import PLOTS, QUANTITIES
 from onpath.lessons.symbols import SYMBOLS
 from onpath.lessons.vocabulary.lists import names_markdown
@@ -31,10 +30,6 @@ def test_nothing_is_left_out() -> None:
     known += [name for entry in ROBOTS.values() for name in specs(entry.parameters)]
     listed = names_markdown()
     assert [name for name in known if f"`{name}`" not in listed] == []
-
-
-def test_drawings_are_the_switches_of_the_page() -> None:
-    assert set(DRAWINGS) == set(SWITCHES)
 
 
 def test_the_command_prints_them(capsys: pytest.CaptureFixture[str]) -> None:

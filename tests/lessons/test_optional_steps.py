@@ -9,7 +9,7 @@ from msgspec.structs import replace
 from onpath.app.lab.commands import GoToStep, OpenLesson, TakeStep
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.lesson_state import LessonState
-from onpath.app.page.lesson_html import entry
+from onpath.app.view.lessons import lesson_card
 from onpath.lessons.course import Course, read_course
 from onpath.lessons.progress import Notes, Progress
 from tests.support.lab import do, loop_cache
@@ -49,4 +49,4 @@ def test_a_lesson_is_finished_without_its_optional_steps(tmp_path: Path) -> None
     notes = Notes(step=6, seen=7, tasks={"hold": 0.0})
     for seen, finished in ((7, True), (6, False)):
         progress = Progress(notes={"01-a": replace(notes, seen=seen)})
-        assert ("✓" in entry(lesson, LessonState(course, progress), "1")) == finished
+        assert lesson_card(lesson, LessonState(course, progress), "1").finished == finished

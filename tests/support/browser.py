@@ -204,8 +204,8 @@ class Tab:
         shape = camera.image_width / camera.image_height
         off = camera.image_width * box["height"] - camera.image_height * box["width"]
         same = abs(off) <= max(box["width"], box["height"])  # the browser rounds to whole pixels
-        page = self.display.page if isinstance(self.display, LabFeed) else None
-        return same and page is not None and abs(page._framed - shape) < 0.02 * shape
+        scene = self.display.scene if isinstance(self.display, LabFeed) else None
+        return same and scene is not None and abs(scene._framed - shape) < 0.02 * shape
 
     @property
     def lab(self) -> Lab:
@@ -332,7 +332,7 @@ class Tab:
     def is_built(self) -> bool:
         """Whether the page is that of the current robot, language and step."""
         feed = self.scheduled.display
-        scene = feed.page if isinstance(feed, LabFeed) else None
+        scene = feed.scene if isinstance(feed, LabFeed) else None
         if scene is None or not scene.is_ready or scene.is_outdated:
             return False
         lab, (robot, language, version) = self.lab, self.page.evaluate(TOLD)

@@ -24,7 +24,7 @@ from tests.bench.simulated_browser import SEES
 def feeds(server: LabServer) -> dict[int, LabFeed]:
     """What shows labs in pages whose part of viser is there, by viser's number of the client."""
     shown = [visit.feed for visit in server.visits if visit.feed is not None]
-    return {feed.page.client.client_id: feed for feed in shown if feed.page is not None}
+    return {feed.scene.client.client_id: feed for feed in shown if feed.scene is not None}
 
 
 def visit_of(server: LabServer, client: int) -> Visit:

@@ -169,8 +169,8 @@ export class RemoteEngine implements Engine {
     private readonly news = new Set<(news: News) => void>()
     private readonly listeners = new Set<(change: Change) => void>()
 
-    /** `plain`: whether the page draws in software. */
-    constructor(private readonly dark: () => boolean, private readonly plain: boolean) {}
+    /** How the page is drawn: dark, in software, in an upright window. */
+    constructor(private readonly drawn: () => { dark: boolean; plain: boolean; upright: boolean }) {}
 
     /** Have the lab tell its form and the values of its fields. */
     askForm(): void {
@@ -206,8 +206,8 @@ export class RemoteEngine implements Engine {
     }
 
     private get greeting(): Hello {
-        const { page, plain } = this, [labs, teacher, speaks, sounds, first_minute] = KEPT.map(kept)
-        return { is: "hello", page, site: siteOf(location), dark: this.dark(), plain, labs, teacher, speaks, sounds, first_minute }
+        const { page } = this, [labs, teacher, speaks, sounds, first_minute] = KEPT.map(kept)
+        return { is: "hello", page, site: siteOf(location), ...this.drawn(), labs, teacher, speaks, sounds, first_minute }
     }
 
     /** Tell the lab that the page is drawn: a lab that nobody sees rests. */

@@ -16,7 +16,7 @@ const REFUSALS = 4 // greetings in a row that are refused, after which the page 
 const SLOW = 3000, MUCH = 0.75 // [ms] without a message, or with less than this share of the speed
 const SLEPT = 20_000, WAKES = 10_000 // [ms] between two looks of a page that slept; without a message after that
 const DEAD = 75_000, BUILDS = 150_000 // [ms] without a message, after which a connection counts as lost: with a lab, and without
-const MISSED = 10_000 // [ms] for which the lab may not know of a picture that is there
+const MISSED = 10_000 // [ms] for which the lab may not know of a picture that was there
 const RELOADED = "onpath-reloaded" // when a page was loaded anew for another version of the lab
 const ORIGIN = "Onpath-Origin" // asks whether pages of an origin may connect; see request_filter.py
 
@@ -43,7 +43,7 @@ export class Connection {
 
     constructor(private readonly engine: RemoteEngine) {
         this.box.setAttribute("role", "status")
-        sayToViser(engine.page)
+        sayToViser(() => `${engine.page}.${this.picture.asked}`)
         for (const event of ["online", "focus", "pageshow"]) addEventListener(event, () => this.picture.soon())
         document.addEventListener("visibilitychange", () => {
             this.quiet = 0
@@ -170,39 +170,34 @@ class PictureLink {
     outdated = false
     /** Whether the picture has been there. */
     wasThere = false
+    /** How many times it has been asked for. */
+    asked = 0
     private connect: (() => void) | null = null // has viser's worker open its websocket
     private state: "closed" | "opening" | "open" = "closed"
-    private client = "" // the number of the client whose page is in the document
-    private former = "" // that of the connection before
-    private scene = 0 // the client that the lab knows
+    private scene = 0 // the asking whose picture the lab draws
     private again = 0 // [ms], when it may be tried again
     private ended = 0 // attempts in a row that ended before the picture was there
+    private came = false // whether the picture that was asked for last has been there
     private missed = 0 // [ms], since when the lab has not known of it
-    private opened = 0 // [ms]
 
     constructor() {
         this.followWorkers()
     }
 
     /** Whether the lab draws it, in this page. */
-    get isThere(): boolean { return this.state === "open" && this.hasPage && this.client === String(this.scene) }
-
-    /** Whether viser's page has come since viser was connected last. */
-    private get hasPage(): boolean { return this.client !== "" && this.client !== this.former }
+    get isThere(): boolean { return this.state === "open" && this.asked === this.scene }
 
     /** Open viser's websocket if it is missing.
-     * @param scene the client that the lab draws for */
+     * @param scene the asking whose picture the lab draws */
     look(now: number, scene: number): void {
         this.scene = scene
-        this.client = document.querySelector<HTMLElement>("[data-page]")?.dataset["client"] ?? ""
         if (this.isThere) {
-            this.wasThere = true
+            this.wasThere = this.came = true
             this.ended = 0
         }
         if (this.state === "closed" && this.connect && webgl.works && now > this.again) this.open(now)
         if (this.state !== "open" || this.isThere) this.missed = now
-        const isLost = this.hasPage ? now > this.missed + MISSED : now > this.opened + BUILDS
-        if (this.state === "open" && isLost) this.renew()
+        if (now > this.missed + (this.came ? MISSED : BUILDS)) this.renew()
     }
 
     /** Try again at once if it is missing. */
@@ -217,8 +212,9 @@ class PictureLink {
 
     private open(now: number): void {
         this.state = "opening"
-        this.former = this.client
-        this.opened = this.missed = now
+        this.asked++
+        this.came = false
+        this.missed = now
         this.connect!()
     }
 
@@ -251,7 +247,7 @@ class PictureLink {
     private hear({ type, versionMismatch }: Heard): void {
         if (type === "connected") {
             this.state = "open"
-            this.opened = Date.now()
+            this.missed = Date.now()
         } else if (type === "closed") {
             if (versionMismatch) this.outdated = true
             const after = this.ended++ ? Math.min(EACH * 2 ** (this.ended - 2), LONGEST) : 0

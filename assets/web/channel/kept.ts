@@ -40,17 +40,17 @@ export function siteOf({ origin, pathname }: { origin: string; pathname: string 
     return origin + pathname.replace(/(\/[cl]\/[a-z0-9]{1,32})?\/?(index\.html)?$/, "")
 }
 
-/** Let viser's page, when the lab asks it, say which page it belongs to. The number is this page's alone: it is neither
+/** Let viser's page, when the lab asks it, say which page it belongs to. The answer is this page's alone: it is neither
  * in the storage, which other tabs share, nor in an address. */
-export function sayToViser(page: string): void {
+export function sayToViser(answer: () => string): void {
     const entry = `${FIRST}page`
     try {
         const get = localStorage.getItem.bind(localStorage), ofSession = sessionStorage.getItem.bind(sessionStorage)
         Storage.prototype.getItem = function (name) {
-            return name === entry ? page : this === sessionStorage ? ofSession(name) : get(name)
+            return name === entry ? answer() : this === sessionStorage ? ofSession(name) : get(name)
         }
     } catch { // viser would only report that there is no storage
-        const none: Partial<Storage> = { getItem: name => (name === entry ? page : null), setItem() {}, removeItem() {}, length: 0 }
+        const none: Partial<Storage> = { getItem: name => (name === entry ? answer() : null), setItem() {}, removeItem() {}, length: 0 }
         Object.defineProperty(window, "localStorage", { value: none, configurable: true })
     }
 }

@@ -78,6 +78,8 @@ export interface Hello {
     dark?: boolean
     /** whether it draws in software, so that the scene must be quickly drawn. */
     plain?: boolean
+    /** whether its window is so; letters in the scene are larger then. */
+    upright?: boolean
     /** see `Store`. */
     speaks?: string
     /** see `Store`. */
@@ -100,6 +102,8 @@ export interface Dark {
 /** The canvas has another size: the camera is then fitted to it. */
 export interface Resized {
     is: "resized"
+    /** see `Hello`. */
+    upright?: boolean
 }
 
 /** The user wants no introduction any more. */
@@ -505,7 +509,7 @@ export interface StateMessage {
     laws: string[]
     /** the share code that was made last; may be empty. */
     shared: string
-    /** number of viser's client for which the lab draws the robots; 0 without one. */
+    /** how many times the page had asked for a picture of the robots when it asked for the present one; 0 without one. */
     scene: number
 }
 

@@ -1,5 +1,5 @@
-// The page of the lab: viser's canvas and panel are the stage; around them stand the strip with chart, numbers and
-// buttons for time, a lens for each robot, and the robots' titles.
+// The page of the lab: viser's canvas is the stage; around it stand the head, the controls, a lesson's column, the strip
+// with plots, numbers and buttons for time, a lens for each robot, and the robots' titles.
 
 import { made, tell } from "../core/dom"
 import { shown } from "../core/engine"
@@ -26,14 +26,12 @@ import { Voice } from "../parts/voice"
 import { Shell } from "./shell"
 
 const LOOK = 250 // [ms] between looks for what viser has put into the page
-const PANEL = 330 // [px] that viser's panel will take, beside the robots
 const RATES = [0.125, 0.25, 0.5, 1, 2, 4]
 const RESTS = 300 // [ms] for which the canvas keeps its size, until the lab is told of it
 const NUMBERS = 100 // [ms] between changes of the large numbers
 const LARGER = 1.7 // how much larger charts and lenses are drawn for a projector
 const UPRIGHT = matchMedia("(width <= 36em), (aspect-ratio <= 4/5)")
-const OURS = new URLSearchParams(location.search).get("panel") === "ours" // controls of our own in place of viser's
-const PHONE = matchMedia("(width <= 36em)") // spelt unlike viser's query, which portrait.js rewrites
+const PHONE = matchMedia("(width <= 36em)")
 
 /** Our part of the page, in one language. */
 class Face {
@@ -51,7 +49,7 @@ class Face {
     private readonly clock = made("span", "clock")
     private readonly column: Column
     private readonly voice: Voice
-    private readonly shell: Shell | null
+    private readonly shell: Shell
     private klass: ClassPanel | null = null
     private canvas: HTMLElement | null = null
     private width = 0 // of the canvas, [px]
@@ -82,19 +80,15 @@ class Face {
         this.element.id = "op-strip"
         this.element.ariaLabel = said(texts, "chart.title")
         this.voice = new Voice(engine, texts, () => UPRIGHT.matches, signal)
-        // Before viser's panel, so that Tab and screen readers come to them first.
-        this.shell = OURS ? new Shell(engine, texts, signal, reopen) : null
-        document.body.prepend(this.stage.element, this.voice.element, this.column.element, this.element, ...this.shell?.elements ?? [],
+        this.shell = new Shell(engine, texts, signal, reopen)
+        document.body.prepend(this.stage.element, this.voice.element, this.column.element, this.element, ...this.shell.elements,
             new Downloads(engine.files, texts, signal).element)
-        if (OURS) {
-            engine.askForm()
-            engine.on(change => {
-                if (change === "form") this.showForms()
-                else if (change === "values") for (const form of this.forms.values()) form.update()
-            }, signal)
-            this.showForms()
-        }
-        document.documentElement.classList.toggle("op-ours", OURS)
+        engine.askForm()
+        engine.on(change => {
+            if (change === "form") this.showForms()
+            else if (change === "values") for (const form of this.forms.values()) form.update()
+        }, signal)
+        this.showForms()
         document.documentElement.classList.add("op-stripped")
         engine.on(change => {
             if (change === "lesson") this.hear()
@@ -123,7 +117,6 @@ class Face {
     /** Show the settings: those of the lab in the panel, those of a step in its card. */
     private showForms(): void {
         const { engine, texts, shell, forms, column } = this, { settings } = engine
-        if (!shell) return
         const host: FormHost = {
             texts, value: settings.value, refused: settings.refused, waits: settings.waits,
             set: (name, value) => settings.set(name, value),
@@ -160,7 +153,7 @@ class Face {
 
     /** Remove it; returns what was open. */
     end(): string {
-        const open = this.shell?.end() ?? ""
+        const open = this.shell.end()
         this.ended.abort()
         this.column.element.remove()
         this.stage.element.remove()
@@ -172,15 +165,16 @@ class Face {
     /** Follow viser's canvas, which changes its size, or is replaced. Not to be called by a ResizeObserver, or a lens misses its own new size. */
     place(): void {
         const canvas = webgl.works ? document.querySelector<HTMLElement>("canvas[data-engine]") : null
-        const { left, top, width, height } = canvas?.getBoundingClientRect() ?? this.room()
+        const { left, top, width, height } = (canvas ?? document.getElementById("root"))?.getBoundingClientRect() ?? new DOMRect()
         if (height > 0) this.engine.shape = width / height
         if (canvas && (width !== this.width || height !== this.height)) {
             clearTimeout(this.resizing)
-            this.resizing = window.setTimeout(() => this.engine.send({ is: "resized" }), RESTS)
+            this.resizing = window.setTimeout(() => this.engine.send({ is: "resized", upright: UPRIGHT.matches }), RESTS)
         }
         Object.assign(this, { width, height })
         if (canvas !== this.canvas && canvas) {
             this.canvas = canvas
+            Object.assign(canvas, { role: "img", ariaLabel: said(this.texts, "page.scene") })
             const observer = new ResizeObserver(() => requestAnimationFrame(() => this.ended.signal.aborted || this.place()))
             observer.observe(canvas)
             this.ended.signal.addEventListener("abort", () => observer.disconnect())
@@ -188,12 +182,6 @@ class Face {
         this.voice.place(left, top, width, height)
         this.makeRoom(this.column.open ? 0 : left)
         this.stage.place(left, top, width, height)
-    }
-
-    /** Where the robots' picture will be. */
-    private room(): DOMRect {
-        const { left, top, width, height } = document.querySelector("#root")?.getBoundingClientRect() ?? new DOMRect()
-        return new DOMRect(left, top, Math.max(width - (OURS || UPRIGHT.matches ? 0 : PANEL), 0), height)
     }
 
     /** A panel on the left is as high as the window; the strip begins beside it. */
@@ -232,8 +220,6 @@ class Face {
         for (const picture of [this.overlay, ...this.lenses]) picture.lit = symbol
         const gain = symbol.startsWith("K_") ? symbol.replace("_", "") : ""
         for (const form of this.forms.values()) form.light(gain)
-        for (const row of document.querySelectorAll(".op-gain")) row.classList.remove("op-gain")
-        if (gain && !this.shell) sliderOf(gain)?.classList.add("op-gain")
     }
 
     /** Draw for a projector, or for a screen. */
@@ -264,18 +250,11 @@ class Face {
     }
 }
 
-/** The row of a gain in viser's panel, if it is shown there. */
-function sliderOf(gain: string): Element | null {
-    const labels = [...document.querySelectorAll("#root .mantine-Flex-root > * label, #root .mantine-Flex-root > label")]
-    const label = labels.find(each => each.textContent.split(/[^\w]/)[0] === gain)
-    return label?.closest(".mantine-Flex-root") ?? null
-}
-
 /** Show our part of the page as soon as the lab has told of itself, whether or not viser's has come. */
 function showLab(): void {
     const root = document.documentElement
     const scheme = new Scheme()
-    const engine = new RemoteEngine(() => scheme.dark, webgl.plain), connection = new Connection(engine)
+    const engine = new RemoteEngine(() => ({ dark: scheme.dark, plain: webgl.plain, upright: UPRIGHT.matches })), connection = new Connection(engine)
     let face: Face | null = null
     let words: Texts | null = null, reopen = "", calmed = !matchMedia("(prefers-reduced-motion: reduce)").matches
     root.classList.add("op-loading")
@@ -303,8 +282,8 @@ function showLab(): void {
     Object.assign(window, { onpathLab: engine }) // for tests
 }
 
-/** Whether the page is dark, as the system or its user wants. Our part is at once; the lab is told for the robots'
- * picture, whose page is made anew, as soon as nothing is typed or dragged there. */
+/** Whether the page is dark, as the system or its user wants. The page is at once; the lab is told for the robots'
+ * picture, which is made anew, as soon as nothing is dragged there. */
 class Scheme {
     dark = false
     private told = false
@@ -330,7 +309,6 @@ class Scheme {
 
     look(engine: RemoteEngine): void {
         if (this.dark === this.told || !engine.connected || this.pressed) return
-        if (document.activeElement?.matches("#root :is(input:not([type=checkbox]), textarea)")) return
         this.told = this.dark
         engine.send({ is: "dark", on: this.dark })
     }

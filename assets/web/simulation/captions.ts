@@ -1,4 +1,4 @@
-// Captions of what each robot is doing, as in app.view.captions.py.
+// Captions of what each robot is doing, as in app/view/captions.py.
 
 import type { FigureData } from "../core/figure_data"
 import { said, significant, written } from "../core/words"

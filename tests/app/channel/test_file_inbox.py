@@ -10,9 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from onpath.app.channel import file_inbox
-from onpath.app.channel.file_inbox import FileInbox
+from onpath.app.channel.file_inbox import FILES, SECONDS, FileInbox
 from onpath.app.channel.messages import DropFile, PathFile, SendFile, SendPart
-from onpath.app.viser_adapter.file_uploads import FILES, SECONDS
 from onpath.models.errors import CodedError
 
 LARGEST = 1000

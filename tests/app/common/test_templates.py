@@ -20,12 +20,10 @@ from msgspec.structs import replace
 from onpath.app.classroom import class_html
 from onpath.app.classroom.classroom import Member
 from onpath.app.classroom.results import distribution
-from onpath.app.common.templates import environment, phrase, render
+from onpath.app.common.templates import environment, phrase
 from onpath.app.exports.report import report
 from onpath.app.lab.lesson_run import LessonRun
 from onpath.app.lab.snapshots.page_snapshot import LessonSnapshot
-from onpath.app.page import lesson_html
-from onpath.app.page.panels.flexible_panel import alpha_bar
 from onpath.app.view.lesson_message import lesson_message
 from onpath.app.view.lesson_view import LessonView
 from onpath.assets import asset_path
@@ -112,11 +110,6 @@ def heading(text: str) -> str:
     return lesson_message(view_of(titled(text)[1]), ROBOT).head
 
 
-def entry(text: str) -> str:
-    lesson, run = titled(text)
-    return lesson_html.entry(lesson, run, "1")
-
-
 def place(text: str) -> str:
     _, run = titled(text)
     member = Member(1, "Ada", Progress(lesson=NAME))
@@ -140,16 +133,9 @@ def gone(text: str) -> str:
 
 PLACES: dict[str, Callable[[str], str]] = {
     "heading": heading,
-    "entry": entry,
     "place": place,
     "nickname": nickname,
-    "member": lambda text: render("panel/member.html", name=text, words=ENGLISH, small=True),
     "choices": choices,
-    "note": lambda text: render("panel/note.html", text=text, small=False),
-    "refusal of a law": lambda text: render("panel/refusal.html", reason=text),
-    "own law": lambda text: render("panel/laws.html", laws=[("#123456", "Own law", text, True)]),
-    "code": lambda text: render("panel/code.html", label=text, code=text, words=ENGLISH),
-    "robot": lambda text: render("panel/robot.html", label=text, text=text, picture=text),
     "class code": lambda text: class_html.class_code(text, False, text, 1, ENGLISH),
     "report": gone,
 }
@@ -185,16 +171,13 @@ class HostileWords(Words):
 
 
 def test_no_catalogue_changes_what_a_page_is_made_of() -> None:
-    lesson = COURSE.lesson(NAME, "en")
 
     def pages(words: Words) -> Iterator[str]:
         run = LessonRun(COURSE, Progress(lesson=NAME))
         run.words = words
         yield from pieces(run, words)
-        yield alpha_bar(0.5, 0.2, True, words)
         yield class_html.table([Member(1, "Ada")], COURSE, 0.0, words)
         yield class_html.class_code("https://a.example/c/a/", False, "a", 1, words)
-        yield lesson_html.entry(lesson, run, "1")
 
     ours, theirs = pages(ENGLISH), pages(HostileWords())
     for plain, hostile in zip(ours, theirs, strict=True):
@@ -312,13 +295,11 @@ def test_a_lesson_makes_markup_in_one_place() -> None:
 @pytest.mark.parametrize(
     "piece",
     [
-        render("panel/code.html", label="x", code="K7P", words=ENGLISH),
         class_html.class_code("https://a.example/", False, "K7P", 1, ENGLISH),
         report(LessonRun(COURSE, Progress()), "K7P", DAY).decode(),
-        render("panel/laws.html", laws=[("#123456", "Own law", "K7P", True)]),
     ],
 )
-def test_codes_and_typed_laws_are_not_translated(piece: str) -> None:
+def test_codes_are_not_translated(piece: str) -> None:
     assert re.search(r'translate="no"[^>]*>\s*K7P', piece)
 
 

@@ -10,14 +10,16 @@ from functools import partial
 from pathlib import Path
 
 import pytest
+from typing_extensions import override
 from viser.infra import WebsockServer
 
 from onpath.app.exports import exporter as exports
-from onpath.app.exports.exporter import Exporter, ViserDelivery
+from onpath.app.exports.exporter import Delivery, Exporter
 from onpath.app.exports.files import film_file
 from onpath.app.exports.recording import record_scene
 from onpath.app.lab.lab import Lab
 from onpath.app.viser_adapter import secure_server as hardening
+from onpath.lessons.words import Words
 from tests.support import waiting
 from tests.support.export_jobs import die
 from tests.support.lab import new_lab
@@ -31,36 +33,35 @@ SOCKETS = Path("/proc/self/fd")
 wait_for = partial(waiting.wait_for, seconds=WAIT)
 
 
-class Note:
-    """Messages to the user."""
-
-    body = ""
-
-
-class Client:
-    """A browser: the notes and the files that it has got."""
+class Client(Delivery):
+    """A browser: what it has been told of each file, and the files that it has got."""
 
     def __init__(self) -> None:
-        self.notes: list[Note] = []
-        self.files: list[bytes] = []
+        self.notes, self.files = list[str](), list[bytes]()
 
-    def add_notification(self, *_: object, **__: object) -> Note:
-        self.notes.append(Note())
-        return self.notes[-1]
+    @override
+    def making(self, name: str, words: Words) -> None:
+        self.notes.append("")
 
-    def send_file_download(self, _name: str, content: bytes, save_immediately: bool) -> None:
+    @override
+    def ready(self, name: str, content: bytes, words: Words) -> None:
+        self.notes[-1] = words("export.ready", name=name)
         self.files.append(content)
+
+    @override
+    def failed(self, name: str, words: Words) -> None:
+        self.notes[-1] = words("export.failed", name=name)
 
     @property
     def answered(self) -> bool:
         """Whether all that was asked for has come, or has been given up."""
-        return bool(self.notes) and all(note.body for note in self.notes)
+        return bool(self.notes) and all(self.notes)
 
 
 @contextmanager
 def tab() -> Iterator[tuple[Client, Exporter]]:
     client = Client()
-    exporter = Exporter(ViserDelivery(client))  # type: ignore[arg-type]
+    exporter = Exporter(client)
     yield client, exporter
     exporter.close()
 
@@ -106,7 +107,7 @@ def test_twelve_simultaneous_requests_make_twelve_films_and_leave_nothing_behind
     threads, sockets = threading.active_count(), open_sockets()
     clients, exporters = [Client() for _ in range(CROWD)], list[Exporter]()
     for each in clients:
-        exporters.append(Exporter(ViserDelivery(each)))  # type: ignore[arg-type]
+        exporters.append(Exporter(each))
     press_at_once(lab, exporters)
     wait_for(lambda: all(client.answered for client in clients))
     for exporter in exporters:
@@ -125,7 +126,7 @@ def test_the_user_is_told_that_the_process_died_and_the_next_film_is_made(
     with tab() as (client, exporter):
         monkeypatch.setattr(exports, "film_file", die)
         press_at_once(lab, [exporter])
-        wait_for(lambda: client.notes and client.notes[0].body == failed)
+        wait_for(lambda: client.notes and client.notes[0] == failed)
         assert not client.files
         monkeypatch.undo()
         wait_for(lambda: not exporter._under_way)
@@ -140,7 +141,7 @@ def test_a_film_that_takes_too_long_is_given_up_and_the_user_is_told(
         monkeypatch.setattr(exports, "PATIENCE", -1.0)
         press_at_once(lab, [exporter])
         wait_for(lambda: client.answered)
-        assert lab.words("export.failed", name=FILM) == client.notes[0].body
+        assert lab.words("export.failed", name=FILM) == client.notes[0]
         monkeypatch.undo()
         wait_for(lambda: not exporter._under_way)
         press_at_once(lab, [exporter])  # the next one is made

@@ -13,9 +13,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
+from typing_extensions import override
 
 from onpath.app.common.palette import AZURE, SELECTED, VERMILLION
-from onpath.app.exports.exporter import Exporter, ViserDelivery
+from onpath.app.exports.exporter import Delivery, Exporter
 from onpath.app.exports.report import report
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
@@ -254,23 +255,21 @@ def test_numbers_beyond_the_axes_make_a_page(course: Course) -> None:
     assert len(page.pictures()) == 1
 
 
-class Note:
-    """A notification that can be changed."""
-
-    body, loading, auto_close_seconds, with_close_button = "", True, 0.0, False
-
-
-class Client:
+class Client(Delivery):
     """Keeps what a browser would have been sent."""
 
     def __init__(self) -> None:
         self.sent: dict[str, bytes] = {}
 
-    def add_notification(self, *_: object, **__: object) -> Note:
-        return Note()
+    @override
+    def making(self, name: str, words: Words) -> None: ...
 
-    def send_file_download(self, name: str, content: bytes, save_immediately: bool) -> None:
+    @override
+    def ready(self, name: str, content: bytes, words: Words) -> None:
         self.sent[name] = content
+
+    @override
+    def failed(self, name: str, words: Words) -> None: ...
 
 
 @pytest.mark.thorough
@@ -279,7 +278,7 @@ def test_it_is_sent_as_it_was_when_it_was_requested(course: Course) -> None:
     do(lab, c.OpenLesson(NAME), c.GoToStep(1))
     do(lab, c.Predict(times=(0.0, 2.0), values=(5.0, 30.0)), c.GoToStep(1), c.PlayStep())
     run(lab, 2.3)
-    exporter = Exporter(ViserDelivery(client))  # type: ignore[arg-type]
+    exporter = Exporter(client)
     exporter.report(CODE)
     exporter.serve(lab)
     wait_for(lambda: client.sent, 240.0)

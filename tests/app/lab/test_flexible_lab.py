@@ -15,9 +15,7 @@ from onpath.app.exports.replay import replay
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot
-from onpath.app.page.panels.flexible_panel import alpha_bar
 from onpath.app.scene.stage_catalogue import stage_of
-from onpath.lessons.words import ENGLISH
 from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE
 from onpath.models.systems.flexible_robot import (
     UNSTABLE,
@@ -184,12 +182,3 @@ def test_it_can_be_taken_home() -> None:
     assert {"q3_rad", "y3_m", "f1_m1.5"} <= set(rows[0]) and len(rows) > 400
     assert draw_history(replay(robot, history)).startswith(b"\x89PNG")
     assert b"<html" in record_scene(robot, history).lower()
-
-
-def test_the_bar_marks_alpha_and_says_when_it_is_too_high() -> None:
-    assert "unstable" in alpha_bar(0.9, 0.7, True, ENGLISH)
-    assert "unstable" not in alpha_bar(0.5, 0.7, True, ENGLISH)
-    assert "unstable" not in alpha_bar(0.9, 0.7, False, ENGLISH)
-    assert "none" in alpha_bar(1.0, float("inf"), True, ENGLISH)
-    assert "3 modes, each with ζ = 0.01" in alpha_bar(0.5, 0.72, True, ENGLISH, (3, 0.01))
-    assert "nan" not in alpha_bar(0.5, float("nan"), True, ENGLISH)

@@ -39,7 +39,7 @@ def test_no_list_and_no_test_has_to_be_changed_for_it() -> None:
         *("-m", "not thorough"),
         "tests/test_architecture.py",
         "tests/lessons/test_names_listed.py",
-        "tests/app/page/test_words.py",
+        "tests/app/view/test_words.py",
         "tests/app/notebook/test_same_motion.py",
         "tests/models/control/laws/test_laws.py",
         "tests/models/systems/test_parameters.py",

@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-import json
-import re
 import sys
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
-from typing import Any, cast
 
 import casadi as ca
 import numpy as np
 import pytest
 
-from onpath.app.cli.main import run_command
 from onpath.app.exports.figures import experiment_figure
 from onpath.app.exports.files import csv_bytes, picture_file
 from onpath.app.lab import commands as c
@@ -26,7 +21,6 @@ from onpath.app.lab.setups.share_code import decode, encode
 from onpath.app.lab.simulation import Simulation
 from onpath.app.lab.snapshots.robot_geometry import geometry_function, robot_snapshots
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot
-from onpath.app.page import panel_factory
 from onpath.app.scene.poses import poses_of
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.view.robot_sketch import robot_sketch
@@ -39,7 +33,6 @@ from onpath.models.studies.experiments import experiments, run
 from onpath.models.systems import catalogue
 from onpath.models.systems.catalogue import FLEXIBLE, ROBOTS
 from onpath.models.systems.robots import RobotEntry
-from tests.support.checkout import ROOT
 from tests.support.lab import FOLLOWER, TRACKER, assert_drawable, assert_sound, do, loop_cache, y
 from tests.support.lab import run as run_lab
 from tests.support.new_robot import GANTRY, new_robot
@@ -269,63 +262,3 @@ def test_a_figure_shows_what_a_new_robot_has_to_plot(bending: RobotEntry) -> Non
     (axes,) = (axes for axes in figure.axes if axes.get_ylabel().startswith("deflection"))
     (line,) = axes.lines
     np.testing.assert_allclose(np.asarray(line.get_ydata()), 1e3 * 0.01 * log.fields["q"][:, 0])
-
-
-def test_the_panel_of_a_flexible_link_is_that_of_every_robot_that_has_one(
-    bending: RobotEntry, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(panel_factory, "FlexiblePanel", lambda **given: given)
-    given: Any = SimpleNamespace(
-        stage=SimpleNamespace(pulls={"plane": None}), language="en", switches=None
-    )
-    factory = panel_factory.PanelFactory(
-        gui=given,
-        words=given,
-        post=given,
-        exporter=given,
-        files=given,
-        submit=given,
-        scene=given,
-        overlays=given,
-        context=given,
-        reset_view=given,
-        draw=given,
-    )
-    for entry in ROBOTS.values():
-        first: Any = SimpleNamespace(key=SimpleNamespace(robot=entry.name))
-        panels = factory._add("flexible", first)
-        assert len(panels) == (entry.name in ("flexible", bending.name))
-        assert all(cast("Any", panel)["link"] is entry.flexible_link for panel in panels)
-
-
-def test_what_draws_and_simulates_knows_no_single_robot() -> None:
-    """The study of the flexible five-bar does."""
-    own = {"exports/zero_dynamics.py"}
-    single = re.compile(r"models\.systems\.(\w*five_bar\w*|flexible\w*|two_link\w*)")
-    files = {str(file.relative_to(ROOT / "app")): file for file in (ROOT / "app").rglob("*.py")}
-    assert {name for name, file in files.items() if single.search(file.read_text("utf-8"))} <= own
-
-
-@pytest.mark.parametrize("name", ["position", "obstruction"])
-def test_the_experiments_can_be_done_with_it(entry: RobotEntry, name: str) -> None:
-    chosen = experiments(entry.name)[name].with_values({"duration": "0.4", "r": "0.04"})
-    for law in DEFAULT_LAWS.values():
-        log = run(chosen, law)
-        assert log.t[-1] > 0.3 and np.isfinite(log.distance).all()
-
-
-def test_the_command_line_does_an_experiment_with_it(
-    entry: RobotEntry, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    file = tmp_path / "log.csv"
-    words = ["experiment", "position", "--robot", entry.name, "--set", "duration=0.2"]
-    run_command([*words, "--csv", str(file), "--json"])
-    assert json.loads(capsys.readouterr().out)["experiment"] == "position"
-    assert entry.make(entry.parameters()).system.coordinate_names[0] in file.read_text()
-
-
-def test_an_unknown_robot_is_told_its_nearest_names() -> None:
-    with pytest.raises(ValueError, match="did you mean two_link_arm"):
-        experiments("two_link")
-    with pytest.raises(KeyError):
-        _ = experiments("five_bar")["flexible"]

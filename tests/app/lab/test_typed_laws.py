@@ -28,7 +28,7 @@ from onpath.app.lab.setups.stored import from_data, to_data
 from onpath.app.lab.snapshots.snapshot import MARKER
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot
 from onpath.app.storage.lab_state import keep, put_back
-from onpath.app.viser_adapter.message_filter import Limits
+from onpath.app.viser_adapter.limits import Limits
 from onpath.lessons.action_schema import Laws, StepSetup
 from onpath.lessons.sides import law_label, law_text, robot_names, side_titles
 from onpath.lessons.vocabulary.setups import scene_faults

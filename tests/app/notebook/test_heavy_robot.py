@@ -14,12 +14,12 @@ from hypothesis import strategies as st
 
 import onpath
 from onpath.app.cli.main import run_command
-from onpath.app.exports.comparison import compared
+from onpath.app.exports.comparison import outcomes_of
 from onpath.app.exports.standalone.figure_choice import chosen
 from onpath.app.exports.standalone.figure_data import figure_data
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
-from onpath.app.page.panels.compare_panel import comparison_html
+from onpath.app.view.comparing import compared
 from onpath.lessons.labels import robot_text
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.closed_loop.loops import InterpretedLoop
@@ -130,9 +130,9 @@ def test_a_comparison_says_which_law_asks_for_more_and_of_which_motor(
     told = json.loads(printed.out)["beyond_efforts"][LAWS[0]]
     assert told.startswith("the motor of joint") and f"path following: {told}" in printed.err
     parameters = with_values(heavy.parameters(), {"speed": 1.0})
-    results, picture = compared(heavy.name, parameters, circle(0.1), {}, LAWS[0], "none", "en")
-    page = comparison_html(results, picture, Words("de"), heavy.make(parameters))
-    assert "der Motor von joint" in page
+    found = {LAWS[0]: outcomes_of(heavy.name, parameters, circle(0.1), LAWS[0], "none")}
+    (row,) = compared(found, LAWS[:1], "none", heavy.make(parameters), Words("de")).rows
+    assert "der Motor von joint" in row.beyond
 
 
 def test_the_lab_says_so_once_in_a_run(heavy: RobotEntry) -> None:

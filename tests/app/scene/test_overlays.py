@@ -19,7 +19,6 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.snapshots.snapshot import END, MARKER
 from onpath.app.lab.snapshots.take_snapshot import take_motion, take_page_snapshot
-from onpath.app.page.panels.show_panel import SWITCHES, rank_legend, tube_numbers
 from onpath.app.scene.arrows import SHORTEST
 from onpath.app.scene.error_nodes import ErrorNodes
 from onpath.app.scene.overlays import Overlays
@@ -30,8 +29,10 @@ from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.scene.tube_nodes import drawn_curve, tube_shape
 from onpath.app.server.lab_server import LabServer
 from onpath.app.server.server_options import ServerOptions
+from onpath.app.view.notes import rank_note, tube_note
 from onpath.app.viser_adapter.images import add_png, png_of
 from onpath.lessons.action_schema import SceneMark
+from onpath.lessons.vocabulary.names import DRAWINGS
 from onpath.lessons.words import ENGLISH
 from onpath.models.control.rank_test import rank_grid
 from onpath.models.paths.curve_faults import ambiguities
@@ -102,7 +103,7 @@ def test_off_it_sends_nothing_whatever_happens(shown: Shown) -> None:
 
 
 @ENTRIES
-@pytest.mark.parametrize("name", SWITCHES)
+@pytest.mark.parametrize("name", DRAWINGS)
 def test_a_switch_draws_and_removes_and_a_still_lab_sends_nothing_more(
     shown: Shown, name: str
 ) -> None:
@@ -238,7 +239,7 @@ def test_every_preset_has_a_tube_that_can_be_drawn(name: str) -> None:
     assert (shape.width < 5e-3) == crosses  # there is no tube at a crossing
     is_straight = lab.simulation.editor.design.name == "segment"
     assert np.isinf(shape.width) == is_straight
-    assert ("straight" in tube_numbers(shape, True, ENGLISH)) == is_straight
+    assert ("straight" in tube_note(shape.width, ENGLISH)) == is_straight
 
 
 def test_the_tube_of_a_rising_path_lies_around_it_in_space() -> None:
@@ -313,13 +314,12 @@ def test_numbers_stand_beside_the_colours_and_the_lines() -> None:
     entry = ROBOTS["flexible"]
     robot = entry.make(entry.parameters())
     grid = rank_grid(robot, entry.parameters(), *map_corners(stage_of(robot), robot))
-    legend = rank_legend(grid, 0.5, ENGLISH)
-    assert f"{largest(grid.values):.3g}" in legend and "(m/s²)/(N m)" in legend
-    assert "α = 0.5" in legend and "α" not in rank_legend(grid, None, ENGLISH)
-    assert rank_legend(None, None, ENGLISH) == "" == tube_numbers(None, True, ENGLISH)
+    note = rank_note(largest(grid.values), 0.5, ENGLISH)
+    assert f"{largest(grid.values):.3g}" in note and "(m/s²)/(N m)" in note
+    assert "α = 0.5" in note and "α" not in rank_note(1.0, None, ENGLISH)
     shape = tube_shape(robot, take_page_snapshot(Lab(loop_cache(), entry), 1.0).path)
-    assert "50.0 mm" in tube_numbers(shape, False, ENGLISH)
-    assert "every" in tube_numbers(shape, True, ENGLISH)
+    assert "50.0 mm" in tube_note(shape.width, ENGLISH)
+    assert "every" in tube_note(shape.width, ENGLISH, (shape.step, shape.degrees))
 
 
 @pytest.fixture

@@ -106,7 +106,7 @@ def around(k: int) -> np.ndarray:
 
 def test_an_endless_freehand_stroke_is_drawn_ten_times_a_second_of_few_points(page: Page) -> None:
     strokes: list[np.ndarray] = []
-    page.view.page._scene.begin_freehand(strokes.append)
+    page.view.scene._scene.begin_freehand(strokes.append)
     base = next(iter(stage_of(RIGID_FIVE_BAR).bases.values()))
     page.scribble("/freehand/sheet", lambda k: base + around(k))
     page.assert_bounded()

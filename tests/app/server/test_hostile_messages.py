@@ -182,8 +182,8 @@ def test_a_sheet_to_draw_on_with_every_index(tab: Tab) -> None:
 @pytest.mark.thorough
 def test_a_wall_and_the_start_of_a_run_with_every_index(tab: Tab) -> None:
     (feed,) = feeds(tab.server).values()
-    assert feed.page is not None
-    scene: Any = feed.page._scene
+    assert feed.scene is not None
+    scene: Any = feed.scene._scene
     scene.show_start(True)
     tab.lab.post(c.Set("wall", True))
     wait_for(lambda: {"/wall/body", "/wall/ends", "/start/ball"} <= set(tab.nodes()), WAIT)

@@ -28,7 +28,7 @@ class Paper:
     client = SimpleNamespace(client_id=1)
 
     def __init__(self) -> None:
-        self.exporter, self.now = self, 0
+        self.now = 0
         self.moved, self.whole = list[int](), list[int]()
         self.places = list[LawPlaces]()
 
@@ -36,9 +36,6 @@ class Paper:
         (self.whole if isinstance(snapshot, PageSnapshot) else self.moved).append(self.now)
         if isinstance(snapshot, PageSnapshot):
             self.places.append(snapshot.places)
-
-    def serve(self, lab: object) -> None:
-        """Nothing is exported."""
 
 
 class Untold:

@@ -11,10 +11,10 @@ import pytest
 
 from onpath.app.common import error_log
 from onpath.app.common.access_codes import new_code
+from onpath.app.common.presses import Presses
 from onpath.app.common.throttle import TRIES
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.loops.loop_cache import LoopCache
-from onpath.app.page.panels.slow_presses import on_slow_press
 from onpath.app.server.lab_registry import LabRegistry
 from onpath.app.server.lab_server import LabServer
 from onpath.app.server.server_options import ServerOptions
@@ -177,37 +177,19 @@ def test_codes_that_nobody_has_make_no_lab_and_soon_are_refused_unasked() -> Non
 
 
 def test_presses_while_one_is_under_way_are_dropped() -> None:
-    gate, begun, callbacks = Gate(), [], []
-
-    class Tab: ...
-
-    tab = Tab()
-
-    class Event:
-        client = tab
-
-    class Button:
-        def on_click(self, callback: Any) -> None:
-            callbacks.append(callback)
+    gate, begun, presses = Gate(), list[threading.Thread](), Presses()
 
     def act() -> None:
         begun.append(threading.current_thread())
         gate.pass_by()
         raise RuntimeError  # does not keep the next press from its turn
 
-    def press() -> None:
-        with pytest.raises(StopIteration):
-            callbacks[-1](Event()).send(None)
-
-    on_slow_press(Button(), act)
-    press()
-    on_slow_press(Button(), act)  # another one of the same tab
-    for _ in range(PRESSES):
-        press()
+    assert presses.run(act)
+    assert not any(presses.run(act) for _ in range(PRESSES))
     assert gate.reached.wait(WAIT) and len(begun) == 1
     gate.open.set()
     begun[0].join(WAIT)
-    press()
+    assert presses.run(act)
     wait_for(lambda: len(begun) == 2, WAIT)
 
 
@@ -247,23 +229,23 @@ def test_a_tab_that_presses_for_ever_is_one_of_many(tmp_path: Path) -> None:
     assert loads.count(loads[0]) <= TRIES
 
 
-def test_a_page_is_replaced_when_no_frame_shows_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A frame that changed widgets of a page already removed would raise, and log it."""
+def test_a_scene_is_replaced_when_no_frame_shows_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A frame that drew in a scene already removed would raise, and log it."""
     server, gate = LabServer("127.0.0.1", 0, LoopCache()), Gate()
     with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
         student.open()
         student.read(lambda: student.moving)
         (entry,) = server.registry._entries.values()
         (visit,) = server.visits
-        page = next(iter(feeds(server).values())).page
-        assert page is not None
-        show = page.show
+        scene = next(iter(feeds(server).values())).scene
+        assert scene is not None
+        show = scene.show
 
         def shown_slowly(snapshot: Any) -> None:
             gate.pass_by()
             show(snapshot)
 
-        monkeypatch.setattr(page, "show", shown_slowly)
+        monkeypatch.setattr(scene, "show", shown_slowly)
         assert gate.reached.wait(WAIT)
         before = error_log._seen.copy()
         reopened = in_thread(lambda: server._reopen(visit, entry))
@@ -271,6 +253,6 @@ def test_a_page_is_replaced_when_no_frame_shows_it(monkeypatch: pytest.MonkeyPat
         gate.open.set()
         reopened.join(WAIT)
         assert not reopened.is_alive()
-        wait_for(lambda: any(f.page is not page for f in feeds(server).values()), WAIT)
+        wait_for(lambda: any(f.scene is not scene for f in feeds(server).values()), WAIT)
         assert error_log._seen == before
     server.stop()

@@ -17,7 +17,7 @@ from websockets.typing import Subprotocol
 from onpath.app.classroom.classroom import Classroom
 from onpath.app.common import error_log
 from onpath.app.lab.loops.loop_cache import LoopCache
-from onpath.app.page.page import Page
+from onpath.app.scene.client_scene import ClientScene
 from onpath.app.server.lab_server import LabServer
 from onpath.app.server.server_options import ServerOptions
 from onpath.app.viser_adapter.data_channel import SUBPROTOCOL
@@ -223,7 +223,7 @@ def test_a_canvas_of_another_size_is_framed_anew(server: LabServer, address: str
         student.open()
         student.read(lambda: student.moving > 3)
         (feed,) = feeds(server).values()
-        page = feed.page
+        page = feed.scene
         assert page is not None
         page._settling = 0
         student.tell({"is": "resized"})
@@ -292,7 +292,7 @@ def test_a_page_that_could_not_be_made_comes_again(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     fails = [True]
-    holder, name = (server, "_feed") if part == "_feed" else (Page, "__init__")
+    holder, name = (server, "_feed") if part == "_feed" else (ClientScene, "__init__")
     genuine = getattr(holder, name)
 
     def made(*what: Any, **named: Any) -> Any:

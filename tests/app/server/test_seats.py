@@ -27,9 +27,9 @@ from onpath.app.common.access_codes import new_code, shown
 from onpath.app.common.presses import Presses
 from onpath.app.common.throttle import TRIES, WITHIN
 from onpath.app.lab.lab import Lab
-from onpath.app.page.page_context import PageContext
-from onpath.app.page.page_requests import PageRequests
 from onpath.app.server.class_service import ClassService
+from onpath.app.server.page_context import PageContext
+from onpath.app.server.page_requests import PageRequests
 from onpath.app.view.sheets import class_message
 from onpath.lessons.words import ENGLISH
 from tests.support.built_in import built_in_course

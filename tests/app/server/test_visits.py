@@ -19,7 +19,7 @@ from onpath.app.server.arrivals import PAGE_KEY
 from onpath.app.server.lab_server import LabServer
 from onpath.app.server.server_options import ServerOptions
 from onpath.app.viser_adapter.addresses import class_address
-from onpath.app.viser_adapter.message_filter import Limits
+from onpath.app.viser_adapter.limits import Limits
 from tests.bench.client_protocol import CAMERA, SUBPROTOCOL, answer, packed, unpacked
 from tests.support import waiting
 from tests.support.own_socket import OwnSocket
@@ -93,7 +93,7 @@ def test_a_picture_gets_the_lab_of_its_page_whenever_it_comes(server: LabServer)
         assert codes[0] != codes[1]
         picture = Picture(url(server), own.page)
         visits = {visit.hello.page: visit for visit in server.visits}
-        wait_for(lambda: (feed := visits[own.page].feed) is not None and feed.page)
+        wait_for(lambda: (feed := visits[own.page].feed) is not None and feed.scene)
         assert visits[other.page].client is None
         assert server.registry.find(codes[0]).client == visits[own.page].number  # type: ignore[union-attr]
         picture.close()

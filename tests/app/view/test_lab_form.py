@@ -97,9 +97,10 @@ def test_a_step_has_what_it_names_and_marks_its_values() -> None:
 
 def test_a_page_hears_of_a_value_when_it_counts_and_of_what_has_changed() -> None:
     lab = Lab(loop_cache())
-    form, switches = PageForm(lab.post, at_once), set[str]()
+    switches = set[str]()
+    form = PageForm(lab.post, at_once, switches)
     overlays = SimpleNamespace(shape=None, rank_map=None)
-    page: Any = SimpleNamespace(switches=switches, overlays=overlays, pull=PULLS[0])
+    page: Any = SimpleNamespace(overlays=overlays, pull=PULLS[0])
 
     def news() -> list[Any]:
         found = list(form.news(take_page_snapshot(lab, 1.0), page, NO_LESSONS, ENGLISH))
@@ -145,7 +146,7 @@ def test_a_page_hears_of_a_value_when_it_counts_and_of_what_has_changed() -> Non
 
 def test_a_point_of_the_path_is_chosen_and_moved() -> None:
     lab = Lab(loop_cache())
-    form = PageForm(lab.post, at_once)
+    form = PageForm(lab.post, at_once, set())
 
     def told(name: str, value: FieldValue) -> dict[str, Any]:
         form.hear(SetField(name, value, 1), True)
@@ -210,7 +211,7 @@ class Typing:
 
     def __init__(self) -> None:
         self.lab = new_lab(0.1)
-        self.form = PageForm(self.lab.post, at_once)
+        self.form = PageForm(self.lab.post, at_once, set())
         self.form.hear(AskForm(), True)
         self.values, self.refused = dict[str, FieldValue](), dict[str, str]()
         self._number = 0

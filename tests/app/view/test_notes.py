@@ -70,7 +70,7 @@ def test_alpha_has_its_limit_which_is_computed_and_warns_beyond() -> None:
     names = [field.name for field in group.fields]
     assert names[:6] == ["output", "alpha", "alpha_note", "deflection", "pull", "larger"]
     assert {"modes", "rho", "zeta", "tip_damping"} < {*names}
-    form, told = PageForm(lab.post, lambda work: work()), dict[str, object]()
+    form, told = PageForm(lab.post, lambda work: work(), set()), dict[str, object]()
     link, snapshot = entry.flexible_link, take_page_snapshot(lab, 1.0)
     assert link is not None
     joints = TURNED * np.round(snapshot.joints[: link.joints] / TURNED)

@@ -17,7 +17,7 @@ from websockets.datastructures import Headers
 from websockets.http11 import Request
 
 from onpath.app.viser_adapter.connection_limits import ConnectionLimits, PerAddress, Proxies
-from onpath.app.viser_adapter.message_filter import FEWEST, OWN_FILES
+from onpath.app.viser_adapter.limits import FEWEST, OWN_FILES
 from onpath.app.viser_adapter.secure_server import Limits, make_server
 from tests.bench.client_protocol import SUBPROTOCOL
 from tests.support import waiting

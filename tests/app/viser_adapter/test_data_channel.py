@@ -28,7 +28,7 @@ from onpath.app.viser_adapter.data_channel import (
     DataChannel,
     PageStream,
 )
-from onpath.app.viser_adapter.message_filter import Limits
+from onpath.app.viser_adapter.limits import Limits
 from onpath.app.viser_adapter.secure_server import make_server
 from tests.bench.raw_socket import is_closed, knock, say
 from tests.support import waiting

@@ -12,10 +12,9 @@ import numpy as np
 import pytest
 import viser
 import websockets.sync.client
-from viser import uplot
 from websockets.typing import Subprotocol
 
-from onpath.app.viser_adapter.frame_channel import FrameChannel, update_gui, update_node
+from onpath.app.viser_adapter.frame_channel import FrameChannel, update_node
 from onpath.app.viser_adapter.secure_server import make_server
 from tests.bench.client_protocol import CAMERA, SUBPROTOCOL, packed, unpacked
 from tests.support.waiting import wait_for
@@ -69,24 +68,6 @@ def test_one_message_does_what_assignments_do(server: viser.ViserServer) -> None
         assert np.array_equal(one["updates"][field], both["updates"][field])
     assert np.array_equal(both["updates"]["batched_positions"].reshape(2, 3), kept)
     assert np.array_equal(nodes[1].batched_positions, kept)
-
-
-def test_a_plot_is_told_what_an_assignment_tells(server: viser.ViserServer) -> None:
-    lines = np.arange(6.0).reshape(2, 3)
-    series = (uplot.Series(label="x"), uplot.Series(label="y"))
-    with browser(server) as (client, socket):
-        plots = [client.gui.add_uplot((np.zeros(2), np.zeros(2)), series) for _ in range(2)]
-        plots[0].data = tuple(lines)
-        update_gui(plots[1], "data", tuple(lines))
-        updates: list[Any] = []
-        while len(updates) < 2:
-            messages = unpacked(socket.recv(timeout=10))
-            updates += [m for m in messages if "data" in m.get("updates", {})]
-    assert [m["uuid"] for m in updates] == [plot._impl.uuid for plot in plots]
-    assert updates[0]["type"] == updates[1]["type"]
-    for one, other in zip(*(m["updates"]["data"] for m in updates), strict=True):
-        assert one.dtype == other.dtype and np.array_equal(one, other)
-    assert np.array_equal(np.array(plots[1].data), lines)
 
 
 @contextmanager
@@ -157,23 +138,6 @@ def test_nothing_is_sent_to_a_browser_that_has_gone(
     done = Event()
     server.get_event_loop().call_soon_threadsafe(done.set)
     assert done.wait(5.0) and not recwarn.list
-
-
-def test_a_page_is_not_told_what_it_has_just_said(server: viser.ViserServer) -> None:
-    with browser(server) as (client, socket):
-        slider = client.gui.add_slider("gain", 0.0, 9.0, 1.0, 0.0)
-        FrameChannel(client)
-        said = {"uuid": slider._impl.uuid, "updates": {"value": 4.0}}
-        socket.send(packed("GuiUpdateMessage", **said))
-        wait_for(lambda: slider.value == 4.0, 30.0)
-        slider.value = 5.0
-        told: list[Any] = []
-        while not told:
-            told = [m for m in unpacked(socket.recv(timeout=10)) if "value" in m.get("updates", ())]
-        assert [m["updates"]["value"] for m in told] == [5.0]
-        buffer = client._websock_connection._state.message_buffer
-        # A picture need not wait for what nobody gets.
-        wait_for(lambda: not buffer.message_from_id, 30.0)
 
 
 def test_what_a_thread_tells_while_the_network_wakes_up_is_told(

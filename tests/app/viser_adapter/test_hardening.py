@@ -27,8 +27,7 @@ from websockets.typing import Origin, Subprotocol
 
 from onpath.app.common import error_log
 from onpath.app.common.allowance import Allowance
-from onpath.app.viser_adapter import secure_connection
-from onpath.app.viser_adapter.message_filter import MessageFilter
+from onpath.app.viser_adapter import secure_connection, secure_server
 from onpath.app.viser_adapter.secure_server import Limits, PortInUse, make_server
 from tests.support import waiting
 
@@ -255,9 +254,9 @@ def test_messages_are_handled_in_the_order_in_which_they_were_sent(
 ) -> None:
     """Those that are handled at once (see `GESTURES`), and those that wait for viser."""
     sent, random, at_once = list[tuple[str, Any]](), Random(1), list[object]()
-    receive = MessageFilter.receive
-    counted = lambda own, *told: (at_once.append(told), receive(own, *told))  # noqa: E731
-    monkeypatch.setattr(MessageFilter, "receive", counted)
+    handle = secure_server._handle_at_once
+    counted = lambda *told: (at_once.append(told), handle(*told))  # noqa: E731
+    monkeypatch.setattr(secure_server, "_handle_at_once", counted)
     for i in range(200):
         if random.random() < 0.1:
             attacker.settle()
@@ -302,6 +301,43 @@ def test_impossible_scene_messages_reach_no_callback(
         kind, fields, _ = SCENE[name]
         attacker.send(kind, **fields(attacker) | change)
     attacker.settle()
+    assert lab.heard(attacker) == []
+
+
+# Widgets, of which a page has none.
+
+OF_WIDGETS: dict[str, dict[str, Any]] = {
+    "GuiUpdateMessage": {"uuid": "x", "updates": {"value": 1.0}},
+    "CommandTriggerMessage": {"uuid": "x"},
+    "FileTransferStartUpload": {
+        "source_component_uuid": "x",
+        "transfer_uuid": "y",
+        "filename": "z",
+        "mime_type": "text/plain",
+        "part_count": 1,
+        "size_bytes": 1,
+    },
+    "FileTransferPart": {
+        "source_component_uuid": "x",
+        "transfer_uuid": "y",
+        "part_index": 0,
+        "content": b"1",
+    },
+}
+
+
+@pytest.mark.usefixtures("no_errors")
+def test_what_concerns_widgets_is_dropped(lab: Lab, attacker: Browser, bystander: Browser) -> None:
+    """Even if there were some."""
+    gui = lab.server.get_clients()[attacker.id].gui
+    slider, button = gui.add_slider("slider", 0.0, 10.0, 0.1, 2.5), gui.add_upload_button("files")
+    for kind, fields in OF_WIDGETS.items():
+        for uuid in (slider._impl.uuid, button._impl.uuid, "x"):
+            own = {name: uuid for name in ("uuid", "source_component_uuid") if name in fields}
+            attacker.send(kind, **fields | own)
+    attacker.settle()
+    assert slider.value == 2.5 and button.value.content == b""
+    assert gui._current_file_upload_states == {}
     assert lab.heard(attacker) == []
 
 

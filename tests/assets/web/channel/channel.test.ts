@@ -6,7 +6,7 @@ import { chance } from "../random"
 
 /** An engine, and what its server says to it. */
 function heard(): { engine: RemoteEngine; say: (message: unknown) => void } {
-    const engine = new RemoteEngine(() => false, false)
+    const engine = new RemoteEngine(() => ({ dark: false, plain: false, upright: false }))
     const say = (message: unknown) => (engine as unknown as { hear(message: unknown): void }).hear(structuredClone(message))
     say(WORDS)
     return { engine, say }

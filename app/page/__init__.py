@@ -1,1 +1,0 @@
-"""The panels and plots of one browser tab."""

@@ -1,1 +1,0 @@
-"""The concept test on a student's page."""

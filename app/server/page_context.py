@@ -1,0 +1,64 @@
+"""The services that a page needs from the server: its lab's commands, the course and the class."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from onpath.app.classroom.teaching.teacher_context import TeacherContext
+from onpath.app.common.presses import Presses
+from onpath.app.scene.client_scene import Look, Post
+from onpath.app.server.page_text import PageText
+from onpath.lessons.course import Course
+
+
+@dataclass(frozen=True, slots=True)
+class ClassSeat:
+    """A lab's place in the class.
+
+    Attributes:
+        join: joins with the class code and a nickname; raises ValueError with a message. Returns
+            the address of the class if its page is elsewhere, where a nickname is asked for.
+        leave: leaves the class but stays in the lab.
+        teach: opens the teacher's page, given the key; see `join`.
+        code: the class code, if the page's address has it; else a student types it.
+    """
+
+    join: Callable[[str, str], str]
+    leave: Callable[[], None]
+    teach: Callable[[str], str]
+    code: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class PageContext:
+    """The context of one client's page.
+
+    Attributes:
+        code: code of its lab.
+        post: receives the commands for its lab.
+        course: all lessons.
+        keep_days: number of days without use after which the lab is deleted; 0 if it lasts only
+            as long as the server.
+        enter: opens the lab of a code; raises ValueError with a message.
+        seat: the lab's place in the class, or None without a class.
+        look: how the scene is to be drawn.
+        privacy_url: the address of the site's privacy notice; empty if it has none.
+        presses: limit what the tab asks for that takes long.
+        teaching: of a teacher's page.
+        text: what the page says.
+        switches: names of what is drawn besides the robots; see `Overlays`.
+    """
+
+    code: str
+    post: Post
+    course: Course
+    keep_days: int
+    enter: Callable[[str], None]
+    text: PageText
+    seat: ClassSeat | None = None
+    look: Look = field(default_factory=Look)
+    privacy_url: str = ""
+    presses: Presses = field(default_factory=Presses)
+    teaching: TeacherContext | None = None
+    switches: set[str] = field(default_factory=set)
