@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from msgspec import Struct
 
-from onpath.app.channel.messages import FrameMessage, PathMessage
+from onpath.app.channel.motion_messages import FrameMessage, PathMessage
 from onpath.app.lab.events import LabEvent
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.loop_states import Slot

@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable
 from weakref import WeakSet
 
-from onpath.app.channel.messages import DropFile, SendFile, SendPart
+from onpath.app.channel.file_messages import DropFile, SendFile, SendPart
 from onpath.app.common.allowance import Allowance
 from onpath.models.errors import CodedError
 

@@ -1,4 +1,4 @@
-"""Makes assets/web/channel/messages.ts: the types of all messages, from messages.py.
+"""Makes assets/web/channel/messages.ts: the types of all messages of this folder.
 
 Those of forms, which pages without a server have, too, are in assets/web/core/form_data.ts.
 
@@ -17,7 +17,8 @@ from typing import Any
 import msgspec
 from msgspec import inspect
 
-from onpath.app.channel import messages
+from onpath.app.channel.form_messages import FORMS as FORM_MESSAGES
+from onpath.app.channel.messages import BY_CHANGES, LabMessage, PageMessage
 from onpath.app.lab.commands.command_codec import command_structs
 from onpath.app.viser_adapter.data_channel import SUBPROTOCOL
 from onpath.assets import asset_path
@@ -26,11 +27,11 @@ FILE, FORMS = "web/channel/messages.ts", "web/core/form_data.ts"
 WIDTH = 120
 HEAD = """\
 // The messages of the channel between a page and its lab, made by app/channel/typescript.py from
-// app/channel/messages.py and app/lab/commands: change them there.
+// app/channel and app/lab/commands: change them there.
 """
 HEAD_OF_FORMS = """\
 // The settings that a place shows, as data; made by app/channel/typescript.py from
-// app/channel/messages.py: change them there.
+// app/channel/form_messages.py: change them there.
 """
 CHANGES = """\
 /** A message with only the fields that have changed. */
@@ -57,7 +58,7 @@ PLAIN: dict[type[inspect.Type], str] = {
 def files() -> dict[str, str]:
     """The texts of the files, by their names in assets."""
     forms = _Writer(reads=False)
-    own = [forms.type(each) for each in inspect.multi_type_info(messages.FORMS)]
+    own = [forms.type(each) for each in inspect.multi_type_info(FORM_MESSAGES)]
     head = [HEAD_OF_FORMS, *forms.interfaces]
     return {FORMS: "\n".join(head), FILE: _messages_file({"../core/form_data": tuple(own)})}
 
@@ -71,9 +72,9 @@ def _messages_file(elsewhere: dict[str, tuple[str, ...]]) -> str:
     imported = {**elsewhere, **IMPORTED}
     page, lab = _Writer(reads=True), _Writer(reads=False, elsewhere=imported)
     commands = [page.command(each) for each in inspect.multi_type_info(command_structs())]
-    from_page = [page.type(each) for each in _kinds(messages.PageMessage)]
-    to_page = [lab.type(each) for each in _kinds(messages.LabMessage)]
-    partial = {each.__name__ for each in messages.BY_CHANGES}
+    from_page = [page.type(each) for each in _kinds(PageMessage)]
+    to_page = [lab.type(each) for each in _kinds(LabMessage)]
+    partial = {each.__name__ for each in BY_CHANGES}
     parts = [
         HEAD,
         "".join(

@@ -30,7 +30,7 @@ from onpath.app.scene.stage import (
     view_of,
 )
 from onpath.app.scene.start_nodes import StartNodes
-from onpath.app.scene.strokes.freehand import Freehand
+from onpath.app.scene.strokes.freehand import FreehandSheets
 from onpath.app.scene.wall_nodes import WallNodes
 from onpath.app.view.captions import Captions
 from onpath.app.viser_adapter.camera import place_camera
@@ -84,7 +84,7 @@ class Scene:
             tones=stage.tones,
         )
         self._start = StartNodes(client.scene, self._origins, pointer, hooks.on_start_moved)
-        self._freehand: Freehand | None = None
+        self._freehand: FreehandSheets | None = None
         self._captions = Captions(words)
         self._zone: PlaneNodes | None = None
 
@@ -179,7 +179,7 @@ class Scene:
             on_stroke: called with its points in the robot's frame, shape (n, 3), [m].
         """
         self.end_freehand()
-        self._freehand = Freehand(self._client.scene, self._stage, on_stroke)
+        self._freehand = FreehandSheets(self._client.scene, self._stage, on_stroke)
 
     @property
     def is_drawing(self) -> bool:

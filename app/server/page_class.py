@@ -8,7 +8,7 @@ from time import monotonic
 from msgspec import Struct
 
 from onpath.app.channel.class_messages import Lead
-from onpath.app.channel.messages import FieldValue, FormMessage, SetField, ValuesMessage
+from onpath.app.channel.form_messages import FieldValue, FormMessage, SetField, ValuesMessage
 from onpath.app.classroom.teaching.class_answers import ClassAnswers
 from onpath.app.classroom.teaching.teacher_context import TeacherContext
 from onpath.app.classroom.teaching.teacher_form import NO_CLASS, PREFIX, TeacherForm

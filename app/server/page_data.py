@@ -13,32 +13,27 @@ from msgspec import Struct
 
 from onpath.app.channel.class_messages import Lead
 from onpath.app.channel.data_frame import LENGTH, FrameSource, frame_message, path_message
+from onpath.app.channel.file_messages import DropFile, MakeFile, SendFile, SendPart
+from onpath.app.channel.form_messages import AskForm, SetField
+from onpath.app.channel.lesson_messages import LessonMessage
 from onpath.app.channel.messages import (
     Alive,
-    AskForm,
     Dark,
-    DropFile,
     Hello,
     LabCode,
-    LessonMessage,
-    Light,
-    LitMessage,
-    MakeFile,
-    Plot,
     Refused,
     Resized,
     Seen,
-    SendFile,
-    SendPart,
-    SetField,
     Skip,
-    StateMessage,
     changes,
     encoded,
     encoded_changes,
 )
+from onpath.app.channel.motion_messages import Plot
 from onpath.app.channel.reading import NoPageMessage, read_message
 from onpath.app.channel.sheet_messages import ClassMessage, Request
+from onpath.app.channel.state_messages import StateMessage
+from onpath.app.channel.symbol_messages import Light, LitMessage
 from onpath.app.classroom.admission import LONGEST_NAME
 from onpath.app.common.work_thread import WorkThread
 from onpath.app.lab.lab import Command, Lab

@@ -11,7 +11,7 @@ from msgspec import Struct
 from typing_extensions import override
 
 from onpath.app.channel.file_inbox import MOST_BYTES, SECONDS, FileInbox
-from onpath.app.channel.messages import (
+from onpath.app.channel.file_messages import (
     DownloadMessage,
     DownloadPart,
     DropFile,

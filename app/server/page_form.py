@@ -12,7 +12,7 @@ import numpy as np
 from msgspec import Struct
 from typing_extensions import override
 
-from onpath.app.channel.messages import (
+from onpath.app.channel.form_messages import (
     AskForm,
     FieldValue,
     FormMessage,

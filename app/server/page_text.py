@@ -7,7 +7,8 @@ from functools import partial
 
 from msgspec.structs import replace
 
-from onpath.app.channel.messages import StateMessage, StoredName
+from onpath.app.channel.messages import StoredName
+from onpath.app.channel.state_messages import StateMessage
 from onpath.app.classroom.teaching.teacher_context import TeacherContext
 from onpath.app.common.work_thread import WorkThread
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot

@@ -23,7 +23,7 @@ FAILED, TOO_LARGE = "keep.failed", "keep.too_large"
 """Keys of what a user is told."""
 
 
-class Store(Protocol):
+class StateStore(Protocol):
     """Where states are saved; see `Records`."""
 
     @property
@@ -49,7 +49,7 @@ class WriteBehind:
 
     def __init__(
         self,
-        records: Store,
+        records: StateStore,
         interval: float = INTERVAL,
         lost: Callable[[str], object] = lambda _: None,
     ) -> None:

@@ -7,7 +7,7 @@ from typing import Any
 
 from msgspec import structs
 
-from onpath.app.channel.messages import FieldValue, FormField, FormNeed, FormOption
+from onpath.app.channel.form_messages import FieldValue, FormField, FormNeed, FormOption
 from onpath.lessons.labels import option_label, parameter_help, parameter_label, parameter_unit
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.lab_settings import SETTINGS

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Literal
 
-from onpath.app.channel.messages import (
+from onpath.app.channel.form_messages import (
     FieldValue,
     FormField,
     FormGroup,

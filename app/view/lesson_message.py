@@ -10,7 +10,7 @@ from typing import Any
 
 import msgspec
 
-from onpath.app.channel.messages import LessonMessage, MeasuredMessage
+from onpath.app.channel.lesson_messages import LessonMessage, MeasuredMessage
 from onpath.app.common.templates import part_of_page
 from onpath.app.steps.block_data import answer_data, block_data, curves_data, script_data
 from onpath.app.steps.step_html import StepPart, part_of, step_html

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 
-from onpath.app.channel.messages import Said
+from onpath.app.channel.state_messages import Said
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.snapshot import Snapshot
 from onpath.app.view.captions import Captions, spoken

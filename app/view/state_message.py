@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from onpath.app.channel.messages import Said, StateMessage
+from onpath.app.channel.state_messages import Said, StateMessage
 from onpath.app.lab.plot_rows import row_data
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.lessons.labels import robot_label

@@ -13,7 +13,7 @@ from typing import get_args
 import casadi as ca
 import numpy as np
 
-from onpath.app.channel.messages import JointSymbol
+from onpath.app.channel.symbol_messages import JointSymbol
 from onpath.app.lab.snapshots.snapshot import END, Motion
 from onpath.app.view.label_geometry import Arc, arcs_of, plane_of, within_half
 from onpath.lessons.symbols import SYMBOLS

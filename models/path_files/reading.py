@@ -42,7 +42,7 @@ _GCODE = re.compile(r"\s*(%|[NO]\d+|[GMT]\s*\d|[;(])", re.IGNORECASE)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class PathFile:
+class ImportedPath:
     """What was read.
 
     Attributes:
@@ -55,7 +55,7 @@ class PathFile:
     remarks: tuple[Message, ...] = ()
 
 
-def path_in(file: Path, placing: Placing = Placing()) -> PathFile:  # noqa: B008, it is frozen
+def path_in(file: Path, placing: Placing = Placing()) -> ImportedPath:  # noqa: B008, it is frozen
     """The path in a file.
 
     Raises:
@@ -67,7 +67,7 @@ def path_in(file: Path, placing: Placing = Placing()) -> PathFile:  # noqa: B008
     return path_of(data, file.name, placing)
 
 
-def path_of(data: bytes, name: str, placing: Placing, most: int = MOST_BYTES) -> PathFile:
+def path_of(data: bytes, name: str, placing: Placing, most: int = MOST_BYTES) -> ImportedPath:
     """The path in the content of a file.
 
     Args:
@@ -92,7 +92,7 @@ def path_of(data: bytes, name: str, placing: Placing, most: int = MOST_BYTES) ->
     return _path(stroke, placing, [*taken, *remarks])
 
 
-def path_through(points: Array, placing: Placing) -> PathFile:
+def path_through(points: Array, placing: Placing) -> ImportedPath:
     """The path through an array of points, shape (n, 2), [m].
 
     Raises:
@@ -103,7 +103,7 @@ def path_through(points: Array, placing: Placing) -> PathFile:
     return _path(Stroke(points, placing.closed, straight=False), placing, [])
 
 
-def _path(stroke: Stroke, placing: Placing, remarks: list[Message]) -> PathFile:
+def _path(stroke: Stroke, placing: Placing, remarks: list[Message]) -> ImportedPath:
     """The path of a line, with the remarks on it and some more."""
     curve = curve_of(placed(stroke, placing), placing)
     if placing.corners == ROUND:
@@ -207,6 +207,6 @@ def _chosen(strokes: Sequence[Stroke], part: int | None) -> tuple[Stroke, list[M
     return stroke, [taken]
 
 
-def _remarked(curve: Curve, remarks: list[Message]) -> PathFile:
+def _remarked(curve: Curve, remarks: list[Message]) -> ImportedPath:
     far = deviation_remark(curve)
-    return PathFile(curve, (*remarks, far) if far else tuple(remarks))
+    return ImportedPath(curve, (*remarks, far) if far else tuple(remarks))

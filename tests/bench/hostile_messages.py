@@ -11,8 +11,8 @@ from typing import Any, get_args
 
 from websockets.frames import Opcode
 
-from onpath.app.channel.messages import JointSymbol
 from onpath.app.channel.sheet_messages import SheetName
+from onpath.app.channel.symbol_messages import JointSymbol
 from onpath.app.lab.commands.command_codec import page_commands
 from onpath.app.server.built_in_course import built_in_course
 from onpath.models.closed_loop.lab_settings import SETTINGS

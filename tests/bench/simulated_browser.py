@@ -27,7 +27,8 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidMessage, InvalidStatus
 from websockets.typing import Subprotocol
 
-from onpath.app.channel.messages import AskForm, SetField, encoded
+from onpath.app.channel.form_messages import AskForm, SetField
+from onpath.app.channel.messages import encoded
 from onpath.app.server.arrivals import PAGE_KEY
 from onpath.app.viser_adapter.data_channel import SUBPROTOCOL as DATA
 from tests.bench.client_protocol import (

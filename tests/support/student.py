@@ -19,7 +19,8 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Subprotocol
 
-from onpath.app.channel.messages import AskForm, encoded
+from onpath.app.channel.form_messages import AskForm
+from onpath.app.channel.messages import encoded
 from onpath.app.server.arrivals import PAGE_KEY
 from onpath.app.viser_adapter.addresses import prefix_of, storage_key
 from onpath.app.viser_adapter.data_channel import SUBPROTOCOL as DATA

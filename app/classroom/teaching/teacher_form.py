@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 import msgspec
 
 from onpath.app.channel.class_messages import Lead, Order
-from onpath.app.channel.messages import (
+from onpath.app.channel.form_messages import (
     FieldValue,
     FormField,
     FormGroup,

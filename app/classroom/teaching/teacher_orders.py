@@ -9,7 +9,7 @@ from functools import partial
 from typing import Any
 
 from onpath.app.channel.class_messages import Lead, Order
-from onpath.app.channel.messages import FieldValue
+from onpath.app.channel.form_messages import FieldValue
 from onpath.app.classroom.class_record import class_record
 from onpath.app.classroom.classroom import Display
 from onpath.app.classroom.concept_test_results import sheets_without_names

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any
 
-from onpath.app.channel.messages import FormField
+from onpath.app.channel.form_messages import FormField
 from onpath.app.exports.site.step_actions import Act, link_acts, script_acts
 from onpath.app.exports.standalone.drawings import SWITCHES, drawings_data
 from onpath.app.exports.standalone.figure_choice import FigureChoice, chosen

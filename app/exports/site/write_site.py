@@ -52,7 +52,7 @@ def write_site(folder: Path, course: Course, home: Path, languages: Iterable[str
     with _whole_folder(folder) as scratch:
         _write_shared(scratch)
         truths = _truths(course, course.lessons)
-        writer = _Writer(
+        writer = _SiteWriter(
             folder=scratch,
             course=course,
             home=home,
@@ -71,7 +71,7 @@ def write_lesson(
         scorm: the package to which it belongs.
     """
     _write_shared(folder)
-    writer = _Writer(
+    writer = _SiteWriter(
         folder=folder,
         course=course,
         home=home,
@@ -92,7 +92,7 @@ def _write_shared(folder: Path) -> None:
     (shared / "site.css").write_text(site_style(), "utf-8")
 
 
-class _Writer:
+class _SiteWriter:
     """Writes the pages of one site."""
 
     def __init__(

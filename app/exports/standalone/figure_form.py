@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 import msgspec
 
-from onpath.app.channel.messages import FormField, FormGroup, FormMessage
+from onpath.app.channel.form_messages import FormField, FormGroup, FormMessage
 from onpath.app.exports.standalone.figure_choice import FigureChoice
 from onpath.app.exports.standalone.setting_places import page_values
 from onpath.app.view.forms import choice_field, setting_field, with_limit

@@ -31,7 +31,7 @@ class Unsupported(ValueError):
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class SettingTable:
     """The numbers that some parameters set together.
 
     Attributes:
@@ -57,7 +57,7 @@ class SettingPlaces:
     """
 
     places: Mapping[str, int]
-    tables: tuple[Table, ...]
+    tables: tuple[SettingTable, ...]
 
     @property
     def names(self) -> set[str]:
@@ -72,7 +72,7 @@ def setting_places(figure: FigureChoice, used: Used) -> SettingPlaces:
     """
     every = dict.fromkeys((*figure.sliders, *figure.changing))
     names = [name for name in every if name not in figure.remade]
-    places, tables, rest = dict[str, int](), list[Table](), list[str]()
+    places, tables, rest = dict[str, int](), list[SettingTable](), list[str]()
     for name in names:
         if (place := _single(figure, name)) is not None:
             places[name] = place
@@ -116,18 +116,18 @@ def _single(figure: FigureChoice, name: str) -> int | None:
 
 def _steady(
     figure: FigureChoice, names: Sequence[str], values: Sequence[Sequence[Any]]
-) -> Table | None:
+) -> SettingTable | None:
     """The table of some parameters; None if it is long, or depends on anything else."""
     rows = list(dict.fromkeys(product(*values)))
     if len(rows) > MOST:
         return None
-    found: Table | None = None
+    found: SettingTable | None = None
     for base in _bases(figure, names):
         after = [with_values(base, dict(zip(names, row, strict=True))) for row in rows]
         for law, curve in _loops(figure):
             vectors = np.array([_settings(figure, law, curve, each) for each in after])
             places = np.flatnonzero((vectors != vectors[0]).any(axis=0))
-            table = Table(
+            table = SettingTable(
                 names=tuple(names),
                 values=tuple(rows),
                 places=tuple(places.tolist()),

@@ -20,7 +20,7 @@ CLOSEST = 0.002
 """Minimum distance between consecutive points of a stroke [m]."""
 
 
-class Freehand:
+class FreehandSheets:
     """Sheets that record one stroke and are removed when it ends.
 
     Args:

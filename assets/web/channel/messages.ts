@@ -1,5 +1,5 @@
 // The messages of the channel between a page and its lab, made by app/channel/typescript.py from
-// app/channel/messages.py and app/lab/commands: change them there.
+// app/channel and app/lab/commands: change them there.
 
 import type { FormMessage, ValuesMessage } from "../core/form_data"
 import type { RowData } from "../core/engine"

@@ -1,5 +1,5 @@
 // The settings that a place shows, as data; made by app/channel/typescript.py from
-// app/channel/messages.py: change them there.
+// app/channel/form_messages.py: change them there.
 
 /** A value that may be chosen. */
 export interface FormOption {

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from onpath.app.channel import file_inbox
 from onpath.app.channel.file_inbox import FILES, SECONDS, FileInbox
-from onpath.app.channel.messages import DropFile, PathFile, SendFile, SendPart
+from onpath.app.channel.file_messages import DropFile, PathFile, SendFile, SendPart
 from onpath.models.errors import CodedError
 
 LARGEST = 1000

@@ -12,17 +12,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from onpath.app.channel import messages
 from onpath.app.channel.messages import (
-    Light,
+    LabMessage,
     PageMessage,
+    Refused,
     Resized,
-    StateMessage,
     changes,
     encoded,
     encoded_changes,
 )
 from onpath.app.channel.reading import NoPageMessage, read_message
+from onpath.app.channel.state_messages import Said, StateMessage
+from onpath.app.channel.symbol_messages import Light
 from onpath.app.channel.typescript import files
 from onpath.app.lab.commands import Hold
 from onpath.app.lab.commands.command_codec import LONGEST, MOST_WHY
@@ -51,7 +52,7 @@ def test_the_types_of_the_pages_script_are_those_of_the_messages() -> None:
         assert asset_path(name).read_text("utf-8") == text
 
 
-@pytest.mark.parametrize("union", [PageMessage, messages.LabMessage])
+@pytest.mark.parametrize("union", [PageMessage, LabMessage])
 def test_every_message_has_a_kind_of_its_own(union: Any) -> None:
     configs = [each.__struct_config__ for each in get_args(union)]
     assert {config.tag_field for config in configs} == {"is"}
@@ -121,7 +122,7 @@ def test_a_mutated_message_is_read_or_refused(text: str, chance: random.Random) 
         read = read_message(mutated(text, chance))
     except NoPageMessage as error:
         assert str(error)
-        assert msgspec.json.decode(encoded(messages.Refused(str(error))))["is"] == "refused"
+        assert msgspec.json.decode(encoded(Refused(str(error))))["is"] == "refused"
     else:
         assert isinstance(read, (Command, *get_args(PageMessage)))
 
@@ -136,7 +137,7 @@ VALUES |= {
 }
 VALUES |= {name: st.lists(st.booleans()) for name in ("clocks", "stopped")}
 VALUES |= {
-    "said": st.builds(messages.Said, voice=st.text(max_size=1)),
+    "said": st.builds(Said, voice=st.text(max_size=1)),
     "above": st.lists(st.floats(0, 1)),
     "cameras": st.lists(st.lists(st.lists(st.floats(0, 1)))),
     "rows": st.lists(st.fixed_dictionaries({"name": st.text(max_size=1)}), max_size=2),

@@ -9,7 +9,8 @@ from typing import Any
 import msgspec
 import pytest
 
-from onpath.app.channel.messages import MakeFile, encoded
+from onpath.app.channel.file_messages import MakeFile
+from onpath.app.channel.messages import encoded
 from onpath.app.lab.commands import SetLanguage
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from onpath.app.channel.messages import (
+from onpath.app.channel.form_messages import (
     AskForm,
     FieldValue,
     FormMessage,

@@ -17,7 +17,7 @@ from onpath.models.path_files import svg
 from onpath.models.path_files.gcode import strokes_of_gcode
 from onpath.models.path_files.placing import CORNERED, LARGEST, Placing, least_radius
 from onpath.models.path_files.reading import (
-    PathFile,
+    ImportedPath,
     path_in,
     path_of,
     path_through,
@@ -68,12 +68,12 @@ G0 Z5
 TABLE = "x,y\n0.05,0\n0,0.04\n-0.05,0.01\n0,-0.04\n"
 
 
-def read(text: str | bytes, name: str = "a.csv", **options: object) -> PathFile:
+def read(text: str | bytes, name: str = "a.csv", **options: object) -> ImportedPath:
     data = text.encode() if isinstance(text, str) else text
     return path_of(data, name, Placing(**options))  # type: ignore[arg-type]
 
 
-def same(one: PathFile, other: PathFile) -> bool:
+def same(one: ImportedPath, other: ImportedPath) -> bool:
     return one.curve.closed == other.curve.closed and np.array_equal(
         one.curve.series, other.curve.series
     )

@@ -10,7 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from onpath.app.channel.class_messages import Lead, Order
-from onpath.app.channel.messages import FieldValue, FormField, encoded
+from onpath.app.channel.form_messages import FieldValue, FormField
+from onpath.app.channel.messages import encoded
 from onpath.app.classroom.classroom import Classroom
 from onpath.app.classroom.teaching.class_answers import ClassAnswers
 from onpath.app.classroom.teaching.teacher_context import TeacherChoices, TeacherContext
