@@ -33,12 +33,6 @@ def parameter_unit(name: str, spec: Spec, words: Words) -> str:
     return words.get(f"parameter.{name}.unit", spec.unit)
 
 
-def parameter_heading(name: str, spec: Spec, words: Words) -> str:
-    """Displayed name of a parameter and its unit, such as "speed [rad/s]"."""
-    unit = parameter_unit(name, spec, words)
-    return parameter_label(name, spec, words) + (f" [{unit}]" if unit else "")
-
-
 def parameter_help(name: str, spec: Spec, words: Words) -> str:
     """Help text of a parameter."""
     return words.get(f"parameter.{name}.help", spec.help)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from collections import Counter
 from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
@@ -156,6 +157,16 @@ def test_no_module_imports_itself_by_way_of_others() -> None:
 
 def test_no_folder_imports_itself_by_way_of_others() -> None:
     assert in_circles(folder_graph()) == set()
+
+
+def test_no_class_name_is_used_twice() -> None:
+    named = Counter(
+        node.name
+        for file in sources()
+        for node in parse(file).body
+        if isinstance(node, ast.ClassDef)
+    )
+    assert [name for name, count in named.items() if count > 1] == []
 
 
 def test_the_simulated_lab_knows_nothing_of_its_user() -> None:

@@ -290,7 +290,6 @@ class LabServer:
         )
         context = PageContext(
             code=code,
-            post=lab.post,
             course=self._course,
             keep_days=self._options.retention.days if keeps else 0,
             enter=partial(self._enter, visit),

@@ -1,4 +1,4 @@
-"""The services that a page needs from the server: its lab's commands, the course and the class."""
+"""The services that a page needs from the server: the course, the class and limits."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from onpath.app.classroom.teaching.teacher_context import TeacherContext
 from onpath.app.common.presses import Presses
-from onpath.app.scene.client_scene import Look, Post
+from onpath.app.scene.client_scene import Look
 from onpath.app.server.page_text import PageText
 from onpath.lessons.course import Course
 
@@ -36,7 +36,6 @@ class PageContext:
 
     Attributes:
         code: code of its lab.
-        post: receives the commands for its lab.
         course: all lessons.
         keep_days: number of days without use after which the lab is deleted; 0 if it lasts only
             as long as the server.
@@ -51,7 +50,6 @@ class PageContext:
     """
 
     code: str
-    post: Post
     course: Course
     keep_days: int
     enter: Callable[[str], None]

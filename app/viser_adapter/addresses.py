@@ -59,12 +59,6 @@ def class_code_in(prefix: str) -> str:
     return name if kind == CLASS else ""
 
 
-def storage_key(key: str, prefix: str) -> str:
-    """The key in a browser's storage for a value that differs between classes."""
-    code = class_code_in(prefix)
-    return f"{key}_{code}" if code else key
-
-
 def without_prefix(path: str) -> str:
     """A path within its prefix."""
     rest = _PLACE.sub("", path, count=1)

@@ -22,7 +22,7 @@ from websockets.typing import Subprotocol
 from onpath.app.channel.form_messages import AskForm
 from onpath.app.channel.messages import encoded
 from onpath.app.server.arrivals import PAGE_KEY
-from onpath.app.viser_adapter.addresses import prefix_of, storage_key
+from onpath.app.viser_adapter.addresses import class_code_in, prefix_of
 from onpath.app.viser_adapter.data_channel import SUBPROTOCOL as DATA
 from tests.bench.client_protocol import CAMERA, SEEN, SUBPROTOCOL, answer, hello, packed, unpacked
 from tests.bench.simulated_browser import MOVING, SEES
@@ -95,8 +95,9 @@ class Student:
 
     @property
     def _labs(self) -> str:
-        """Where the browser keeps the codes of its labs."""
-        return storage_key("onpath_sessions", prefix_of(urlsplit(self.address).path))
+        """Where the browser keeps the codes of its labs; see assets/web/channel/kept.ts."""
+        room = class_code_in(prefix_of(urlsplit(self.address).path))
+        return f"onpath_sessions_{room}" if room else "onpath_sessions"
 
     def open(self) -> None:
         """Open the page, or open it again."""

@@ -48,7 +48,6 @@ ALWAYS = ("pull", "hold", "run", "step", "reset", "plot")
 """Controls that every step of the lab has."""
 HERE = ("hold", "editor", "show", "start", "larger")
 """Controls besides parameters that a step's page has, too."""
-NO_RANGE: dict[str, Any] = {"low": 0.0, "high": 1.0, "step": 1.0, "options": []}
 STANDS_FOR = {"flexible": ("output", "alpha")}
 """Controls that stand for several parameters, of which the page has these."""
 MOST = 8  # figures in the cache; those of one lesson follow each other

@@ -101,7 +101,6 @@ class World:
         text: Any = SimpleNamespace(words=ENGLISH, preferences={})
         context = PageContext(
             code=page.code,
-            post=page.lab.post,
             course=COURSE,
             keep_days=7,
             enter=lambda _: None,
