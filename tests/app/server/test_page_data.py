@@ -245,7 +245,7 @@ def test_a_page_that_is_told_nothing_of_another_s_lab(address: str) -> None:
 def test_a_page_keeps_its_websocket_when_its_scene_is_built_anew(address: str) -> None:
     with Student(address) as student:
         student.open()
-        student.read(lambda: student.moving)
+        student.read(lambda: student.moving and student.state)
         student.tell({"do": "ChooseRobot", "name": "two_link_arm"})
         student.read(lambda: student.state["robot"] == "two_link_arm")
         moving = student.moving
