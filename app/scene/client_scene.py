@@ -39,7 +39,7 @@ TITLES, MOST_TITLES = 44.0, 0.1
 NEAR = 1e-3
 """Distance from where the camera was put at which it is there, as a share of that to the robots."""
 
-Post = Callable[[c.Command], object]
+Post = Callable[[c.Command], None]
 """Takes a command."""
 
 

@@ -22,7 +22,7 @@ from onpath.app.server.lab_server import LabServer
 from onpath.app.server.own_part import own_part
 from onpath.app.viser_adapter.page_scripts import our_scripts
 from tests.support.own_socket import OwnSocket
-from tests.support.student import Student
+from tests.support.waiting import wait_for
 
 SITE = "http://lab.example/"
 LONGEST = 30.0  # [s] of a first message
@@ -41,7 +41,6 @@ NETWORK = """plan => {
     const lab = { up: true, visits: new Map(), tabs: [], datas: [] }
     Object.assign(lab, { wrong: [], whole: 0, same: 0, calm: 0 })
     window.lab = lab
-    let number = 0
     window.requestAnimationFrame = act => later(() => act(performance.now()), 1)
     Object.defineProperty(navigator, "onLine", { get: () => !lab.offline })
     const seen = () => lab.hidden ? "hidden" : "visible"
@@ -56,7 +55,7 @@ NETWORK = """plan => {
     // What the server knows of a page, as long as it has one of its websockets.
     class Visit {
         constructor(page) { Object.assign(this, { page, data: null, tab: null, isOpen: false }) }
-        get scene() { return this.tab ? this.tab.client : 0 }
+        get scene() { return this.tab?.isDrawn ? this.tab.asked : 0 }
         tellScene() { this.data?.tell(JSON.stringify({ is: "state", scene: this.scene })) }
         lose(part, held) {
             if (this[part] !== held) return
@@ -72,12 +71,12 @@ NETWORK = """plan => {
         say(data) {
             const event = new MessageEvent("message", { data })
             this.dispatchEvent(event)
-            if (data.type === "connected") document.querySelector("#root").replaceChildren()
         }
         postMessage({ type }) {
             if (type !== "set_server" && type !== "retry") return
             this.leave?.()
-            const tab = { at: now(), alive: true, opens: true, mute: false, client: 0, visit: null }
+            const tab = { at: now(), alive: true, opens: true, mute: false }
+            Object.assign(tab, { asked: 0, isDrawn: false, visit: null })
             const generation = ++this.generation, isLast = () => generation === this.generation
             const current = () => tab.alive && isLast()
             const end = () => {
@@ -117,27 +116,22 @@ NETWORK = """plan => {
             }, reachable() ? drawn() : 0.01)
         }
         belong(tab) {
-            const visit = lab.visits.get(localStorage.getItem("viser-user:page"))
+            const [page, asked] = (localStorage.getItem("viser-user:page") ?? "").split(".")
+            const visit = lab.visits.get(page)
             if (!visit) return tab.drop()
             visit.tab?.drop()
-            Object.assign(tab, { visit, client: ++number })
+            Object.assign(tab, { visit, asked: Number(asked) })
             visit.tab = tab
             later(() => {
                 if (!tab.alive || this.current !== tab) return
-                this.show(tab.client)
+                this.say({ type: "message_batch" })
+                tab.isDrawn = true
                 visit.tellScene()
             }, drawn())
         }
-        show(client) {
-            this.say({ type: "message_batch" })
-            const root = document.querySelector("#root")
-            root.innerHTML = plan.page
-            root.querySelector("[data-page]").dataset.client = client
-        }
         get isWhole() {
-            const shown = Number(document.querySelector("[data-page]")?.dataset.client ?? 0)
-            const told = lab.datas.some(data => data.hears && data.scene === shown)
-            return Boolean(this.current && shown && shown === this.current.client && told)
+            const shown = this.current?.isDrawn ? this.current.asked : 0
+            return Boolean(shown && lab.datas.some(data => data.hears && data.scene === shown))
         }
     }
     window.Worker = FakeWorker
@@ -310,23 +304,16 @@ class Told(dict[str, Any]):
 
 @pytest.fixture(scope="module")
 def told(server: LabServer) -> Told:
-    """What a real lab tells a page at first: viser's part, and its own messages."""
-    address = f"ws://127.0.0.1:{server.server.get_port()}"
-    with Student(address) as student, OwnSocket(address) as own:
-        student.open()
-
-        def page() -> str:
-            contents = (str(widget.get("content", "")) for widget in student.widgets.values())
-            return next((text for text in contents if "data-client" in text), "")
-
-        student.read(lambda: page() != "" and own.kinds() >= {"words", "state", "path", "frame"})
+    """What a real lab tells a page at first."""
+    with OwnSocket(f"ws://127.0.0.1:{server.server.get_port()}") as own:
+        wait_for(lambda: own.kinds() >= {"words", "state", "path", "frame"}, LONGEST)
         messages = list[str]()
         for message in own.told:
             if "achieved" in message:  # this machine may be busy just now
                 message["achieved"] = message.get("rate", 1.0)
             if message["is"] != "alive":
                 messages.append(json.dumps(message))
-        return Told(page=page(), messages=messages)
+        return Told(messages=messages)
 
 
 def document() -> str:

@@ -23,12 +23,11 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.setups.capture import capture
 from onpath.app.lab.setups.setup import Setup
-from onpath.app.lab.setups.share_code import decode, encode
+from onpath.app.lab.setups.share_code import LONGEST_TEXT, decode, encode
 from onpath.app.lab.setups.stored import from_data, to_data
 from onpath.app.lab.snapshots.snapshot import MARKER
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot
 from onpath.app.storage.lab_state import keep, put_back
-from onpath.app.viser_adapter.limits import Limits
 from onpath.lessons.action_schema import Laws, StepSetup
 from onpath.lessons.sides import law_label, law_text, robot_names, side_titles
 from onpath.lessons.vocabulary.setups import scene_faults
@@ -177,7 +176,7 @@ def test_the_code_of_the_longest_laws_can_be_pasted() -> None:
     laws = {side: f"across = {terms}"[: LONGEST - 20] for side in SIDES}
     laws = {side: law[: law.rindex(" +")] + f"; along = {len(side)}" for side, law in laws.items()}
     code = encode(Setup(laws=laws))
-    assert decode(code).laws == laws and len(code) < Limits().max_text_length
+    assert decode(code).laws == laws and len(code) < LONGEST_TEXT
 
 
 @pytest.mark.parametrize(
