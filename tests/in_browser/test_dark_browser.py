@@ -29,6 +29,19 @@ from tests.support.browser import THREE_FRAMES, WAIT, Tab, wait_for
 pytestmark = pytest.mark.thorough
 expect.set_options(timeout=WAIT * 1e3)
 
+LETTERS = """() => {
+    const drawing = WebGL2RenderingContext.prototype, {getUniformLocation, uniform1f} = drawing
+    const places = new Set()
+    drawing.getUniformLocation = function (program, name) {
+        const place = getUniformLocation.call(this, program, name)
+        if (name === "onpathDark") places.add(place)
+        return place
+    }
+    drawing.uniform1f = function (place, value) {
+        if (places.has(place)) window.letters = value
+        uniform1f.call(this, place, value)
+    }
+}"""
 LESSON = "01-path-or-timetable"
 SIZES = {"desk": (1280, 800), "telephone": (390, 844)}
 
@@ -115,6 +128,21 @@ def test_an_open_page_follows_the_browser_s_scheme_without_being_loaded_again(
     expect(box).to_be_focused()
     expect(box).to_have_value("12")  # half typed
     assert tab.page.evaluate("window.isFirst") and tab.scheduled.lab is lab
+    tab.page.context.close()
+
+
+def test_letters_in_the_scene_follow_the_users_own_look(
+    browser: Browser, server: LabServer
+) -> None:
+    tab = visit(browser, server, draws=True, scheme="light")
+    tab.page.evaluate(LETTERS)
+    tab.switch("Labels, axes").check()
+    tab.page.get_by_role("button", name="Language, display").click()
+    look = tab.page.get_by_role("combobox", name="Look")
+    for choice in ("dark", "light"):
+        look.select_option(choice)
+        wait_for(lambda dark=choice == "dark": tab.page.evaluate("window.letters") == float(dark))
+    assert tab.errors == []
     tab.page.context.close()
 
 
