@@ -5,7 +5,8 @@ const ownWords = (() => {
   const texts = JSON.parse(document.getElementById("op-words").textContent);
 
   function language() {
-    const shown = document.documentElement.matches(".op-stripped") ? [document.documentElement.lang] : [];
+    const { lang, classList } = document.documentElement;
+    const shown = classList.contains("op-loading") ? [] : [lang];
     const own = [...shown, ...navigator.languages].map((each) => each.split("-")[0]);
     return own.find((each) => each in texts) ?? "en";
   }

@@ -386,7 +386,7 @@ def becomes_whole(
         "lenses": 2,
         "hold": True,
         "notice": "",
-        "root": "op-stripped",
+        "root": "",
     }
     assert visit.wrong == []
 

@@ -89,7 +89,6 @@ class Face {
             else if (change === "values") for (const form of this.forms.values()) form.update()
         }, signal)
         this.showForms()
-        document.documentElement.classList.add("op-stripped")
         engine.on(change => {
             if (change === "lesson") this.hear()
             else if (change === "measured") this.column.measure(engine.measured!)
@@ -158,7 +157,7 @@ class Face {
         this.column.element.remove()
         this.stage.element.remove()
         this.element.remove()
-        document.documentElement.classList.remove("op-stripped", "op-large", "op-lesson", "op-waits", "op-beside")
+        document.documentElement.classList.remove("op-large", "op-lesson", "op-waits")
         return open
     }
 
@@ -180,14 +179,7 @@ class Face {
             this.ended.signal.addEventListener("abort", () => observer.disconnect())
         }
         this.voice.place(left, top, width, height)
-        this.makeRoom(this.column.open ? 0 : left)
         this.stage.place(left, top, width, height)
-    }
-
-    /** A panel on the left is as high as the window; the strip begins beside it. */
-    private makeRoom(left: number): void {
-        document.documentElement.classList.toggle("op-beside", left > 0)
-        this.element.style.left = left > 0 ? `${left}px` : ""
     }
 
     /** Put the lenses on the stage, or into the strip on a telephone. */

@@ -157,7 +157,6 @@ export class Column implements Robots {
     private leave(place: string): void {
         this.place = place
         this.legend.clear()
-        this.element.classList.remove("turned")
         this.view = null
         this.tasks = []
         for (const section of Object.values(this.sections)) section.remove()
@@ -272,8 +271,6 @@ export class Column implements Robots {
     }
 
     private press(event: MouseEvent): void {
-        const turn = (event.target as HTMLElement).closest<HTMLElement>(".turn")
-        if (turn) return turn.setAttribute("aria-pressed", String(this.element.classList.toggle("turned")))
         const sent = (event.target as HTMLElement).closest<HTMLElement>("[data-send]")?.dataset["send"]
         if (!sent) return
         const messages = JSON.parse(sent) as Sent | Sent[]
