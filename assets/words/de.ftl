@@ -584,7 +584,6 @@ run-reset = Zurücksetzen
 run-view = Ansicht zurück
 run-rate = Zeit läuft mit
 
-controls-editor = Bahn bearbeiten
 controls-help = Hilfe und Tasten
 
 ## Die Wand und der Start
@@ -633,7 +632,6 @@ design-zone_hint = Wo der Arm gestreckt oder gefaltet ist, Gl. (14)
 ## Verstärkungen und Realismus
 
 gains-defaults = Auf Anfangswerte
-gains-realism = Realismus
 gains-across = Quer
 gains-along = Längs
 gains-pulse = Prüfstoß
@@ -647,7 +645,6 @@ gains-identify_hint = Schätzt M und b aus den letzten 3 s des rechten Roboters 
 
 ## Der elastische Balken
 
-flexible-title = Biegsamer Balken
 flexible-pull = Zugebene
 flexible-pull_hint = Die Ebene durch die Spitze, in der die Maus an ihr zieht
 flexible-beam = Balken und Regelstrecke

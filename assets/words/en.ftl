@@ -499,7 +499,6 @@ run-reset = Reset
 run-view = Reset view
 run-rate = Time runs at
 
-controls-editor = Path editor
 controls-help = Help and keys
 
 ## The wall and the start
@@ -548,7 +547,6 @@ design-zone_hint = Where the arm is stretched or folded, eq. (14)
 ## Gains and realism; the names of the parameters themselves stand in models/
 
 gains-defaults = Reset to defaults
-gains-realism = Realism
 gains-across = Across
 gains-along = Along
 gains-pulse = Test pulse
@@ -562,7 +560,6 @@ gains-identify_hint = Estimates M and b from the right robot's last 3 s and uses
 
 ## The flexible link
 
-flexible-title = Flexible link
 flexible-pull = Pull in
 flexible-pull_hint = The plane, through the tip, in which the mouse pulls it
 flexible-beam = Beam and plant

@@ -37,9 +37,9 @@ REFUSALS = {"say.refused", "say.no_further"}
 """Keys of the messages with which a path is refused."""
 CONTROLS = {
     "hold": "run.hold_both",
-    "editor": "controls.editor",
-    "gains": "gains.title",
-    "flexible": "flexible.title",
+    "editor": "form.group_points",
+    "gains": "form.group_gains",
+    "flexible": "form.group_robot",
     "identify": "gains.identify",
     "start": "start.title",
     "wall": "wall.title",
@@ -48,8 +48,10 @@ CONTROLS = {
 }
 """Control of a scene -> key of its name on the page."""
 BUTTONS = (
-    *("run.run", "run.pause", "run.step", "run.reset", "run.let_both_go", "gains.realism"),
+    *("run.run", "run.pause", "run.step", "run.reset", "run.let_both_go"),
     *("gains.pulse", "design.undo", "past.go_on", "controls.help", "lesson.lessons", "laws.about"),
+    *("form.group_setup", "form.group_hand", "form.group_along", "form.group_reality"),
+    "form.group_view",
 )
 """Keys of other names on the page that a text may tell its reader to press or open."""
 OF_PAGE = ("plot", "drawing", "control", "label")
