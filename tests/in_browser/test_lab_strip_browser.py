@@ -307,7 +307,10 @@ def test_an_invitation_covers_neither_robots_nor_the_strip(
             if bottom <= tab.page.evaluate(TOP):
                 return True
             is_below = box["y"] >= boxes["scene"]["bottom"] - 1  # no room above the robots
-            return is_below and bottom <= min(button["top"] for button in boxes["buttons"])
+            shown = [boxes["chart"], *boxes["lenses"], *boxes["buttons"]]
+            return is_below and all(
+                bottom <= each["top"] or each["bottom"] <= box["y"] for each in shown
+            )
 
         for size in CHARTED:
             give(tab, size)
