@@ -397,6 +397,7 @@ def _let_in(server: LabServer) -> Guest | None:
         return Guest(server)
     except InvalidStatus as refused:
         assert refused.response.status_code == HTTPStatus.TOO_MANY_REQUESTS
+        time.sleep(2 / Limits().tabs_per_second_each)  # until both of its websockets may be opened
         return None
 
 

@@ -165,7 +165,8 @@ def test_no_broken_request_is_noticed_by_anybody_else(running: Running) -> None:
                 assert closed(klass) == []
             least = ROUNDS * len([*requests()])
             assert [each.result() for each in attacks] == [least] * len(ATTACKERS)
-        assert klass.is_back()  # where all of them have been all the time
+        assert closed(klass) == []
+        klass.until(klass.is_back)  # as soon as the attackers' last connections have ended
         assert site.serving() is serving
         for path in PATHS:
             assert status(site.port, path) in (200, 302)
