@@ -8,7 +8,7 @@ from time import monotonic
 from msgspec import Struct
 
 from onpath.app.channel.class_messages import Lead
-from onpath.app.channel.form_messages import FieldValue, FormMessage, SetField, ValuesMessage
+from onpath.app.channel.form_messages import FieldValue, FormMessage, SetField
 from onpath.app.classroom.teaching.class_answers import ClassAnswers
 from onpath.app.classroom.teaching.teacher_context import TeacherContext
 from onpath.app.classroom.teaching.teacher_form import NO_CLASS, PREFIX, TeacherForm
@@ -16,6 +16,7 @@ from onpath.app.classroom.teaching.teacher_orders import TeacherOrders
 from onpath.app.common.work_thread import WorkThread
 from onpath.app.exports.exporter import Delivery
 from onpath.app.lab.lab import Command
+from onpath.app.server.told_values import ToldValues
 from onpath.lessons.course import Course
 from onpath.lessons.words import Words
 
@@ -48,9 +49,7 @@ class PageClass:
 
     def restart(self) -> None:
         """Forget what the page knows."""
-        self._told_form = NO_CLASS
-        self._told_values, self._told_refused = dict[str, FieldValue](), dict[str, str]()
-        self._told_heard = dict[str, int]()
+        self._told_form, self._told = NO_CLASS, ToldValues()
 
     def close(self) -> None:
         """Start no further work. Thread-safe."""
@@ -77,13 +76,7 @@ class PageClass:
         if form != self._told_form:
             self._told_form = form
             yield form
-        changed = {n: v for n, v in values.items() if self._told_values.get(n) != v}
-        why = {n: w for n, w in refused.items() if self._told_refused.get(n) != w}
-        why |= {n: "" for n in self._told_refused if n not in refused}
-        new = {n: k for n, k in heard.items() if self._told_heard.get(n) != k}
-        if changed or why or new:
-            self._told_values, self._told_refused, self._told_heard = values, refused, heard
-            yield ValuesMessage(changed, why, new)
+        yield from self._told.news(values, refused, heard)
 
     def _carry_out(self, message: Lead | SetField) -> None:
         if isinstance(message, Lead):

@@ -17,7 +17,6 @@ from onpath.app.channel.form_messages import (
     FieldValue,
     FormMessage,
     SetField,
-    ValuesMessage,
 )
 from onpath.app.classroom.teaching.teacher_form import NO_CLASS
 from onpath.app.common.background import Background, Submit
@@ -27,6 +26,7 @@ from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of, 
 from onpath.app.scene.client_scene import ClientScene
 from onpath.app.scene.overlays import Overlays
 from onpath.app.scene.rank_nodes import largest
+from onpath.app.server.told_values import ToldValues
 from onpath.app.view.lab_form import (
     NO_STEP,
     PULLS,
@@ -99,8 +99,7 @@ class PageForm:
         """Forget what the page knows, and what it has asked for."""
         self.is_asked = False
         self._forms: tuple[FormMessage | None, ...] = (None,) * 3
-        self._values, self._refused = dict[str, FieldValue](), dict[str, str]()
-        self._told = dict[str, int]()
+        self._told = ToldValues()
 
     def hear(self, message: AskForm | SetField, is_own: bool) -> None:
         """Carry out what a page has set. On the event loop.
@@ -197,16 +196,7 @@ class PageForm:
         values["pull"] = PULLS[0] if scene is None else scene.pull
         values["least_rank"] = self._least_rank(snapshot, words)
         values |= _notes_on(None if scene is None else scene.overlays, snapshot, words)
-        refused = refusals_in(snapshot)
-        changed = dict[str, FieldValue]()
-        if values != self._values:
-            changed = {n: v for n, v in values.items() if self._values.get(n) != v}
-        why = {n: w for n, w in refused.items() if self._refused.get(n) != w}
-        why |= {n: "" for n in self._refused if n not in refused}
-        new = {n: k for n, k in heard.items() if self._told.get(n) != k}
-        if changed or why or new:
-            self._values, self._refused, self._told = values, refused, heard
-            yield ValuesMessage(changed, why, new)
+        yield from self._told.news(values, refusals_in(snapshot), heard)
 
 
 def _notes_on(
