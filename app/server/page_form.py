@@ -92,7 +92,7 @@ class PageForm:
         self._own = deque[SetField]()  # what concerns the page alone
         self._typing = set[str]()  # sides for which a law is being typed
         self._critical = Background[float](submit)
-        self._rank: tuple[object, str] = None, ""  # a path, and its least rank
+        self._rank = Background[float](submit)
         self.restart()
 
     def restart(self) -> None:
@@ -157,12 +157,13 @@ class PageForm:
         return self._critical.value
 
     def _least_rank(self, snapshot: PageSnapshot, words: Words) -> str:
-        """What the rank test says of the path."""
+        """What the rank test says of the path; empty while it is not known yet."""
+        robot, parameters = robot_of(snapshot), parameters_of(snapshot)
+        key = snapshot.path.version, robot.plant(parameters).tobytes()
         sampled = snapshot.edit.sampled
-        if sampled is not self._rank[0]:
-            ranks = rank_map(robot_of(snapshot), parameters_of(snapshot), sampled)
-            self._rank = sampled, f"{float(np.min(ranks)):.2f}"
-        return words("design.rank", number=self._rank[1])
+        self._rank.ask(key, lambda: float(np.min(rank_map(robot, parameters, sampled))))
+        least = self._rank.value
+        return "" if least is None else words("design.rank", number=f"{least:.2f}")
 
     def news(
         self, snapshot: PageSnapshot, scene: ClientScene | None, course: Course, words: Words
