@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any, get_args
 
 import pytest
@@ -22,6 +23,7 @@ from onpath.app.lab.lab import Command
 from onpath.app.lab.setups.setup import Setup
 from onpath.app.lab.setups.share_code import encode
 from onpath.app.server.built_in_course import built_in_course
+from onpath.app.storage.records import NotKept
 from onpath.lessons.pace import Pace
 from onpath.lessons.progress import Progress
 from onpath.lessons.words import Words, languages
@@ -145,6 +147,26 @@ def test_the_button_for_one_student_never_acts_on_another(desk: Desk) -> None:
     assert list(desk.room.members()) == [SECOND] and desk.values["follow"] == 2
     desk.orders.lead(Lead("delete", button["member"]))  # who is not there any more
     assert list(desk.room.members()) == [SECOND]
+
+
+def test_a_teacher_reads_in_german_why_an_order_was_refused() -> None:
+    desk = Desk("de")
+    desk.set("follow", 1.0)
+    desk.set("name", " ")
+    refused = desk.teaching.chosen.refused
+    assert refused == {f"{PREFIX}name": "ein Spitzname hat mindestens ein Zeichen"}
+    desk.set("name", "Eva")
+    assert not refused and desk.room.members()[FIRST].name == "Eva"
+
+
+def test_a_teacher_reads_in_german_what_cannot_be_forgotten() -> None:
+    def fails() -> int:
+        raise NotKept("error.database", reason="disk full")
+
+    desk = Desk("de")
+    teaching = replace(desk.teaching, forget=fails)
+    TeacherOrders(COURSE, teaching, desk.posted.append, desk._deliver).lead(Lead("forget", 0))
+    assert desk.values["told"] == "die Datenbank meldet: disk full"
 
 
 def test_the_class_is_led_from_step_to_step(desk: Desk) -> None:
