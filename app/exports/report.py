@@ -13,7 +13,7 @@ from onpath.app.common.templates import render
 from onpath.app.exports.report_plot import draw_prediction
 from onpath.app.lab.lesson_state import LessonState
 from onpath.app.view.concept_test_facts import results_of
-from onpath.app.view.curve_words import curve_words, number
+from onpath.app.view.curve_words import curve_words
 from onpath.app.view.report_facts import (
     Chapter,
     chapters,
@@ -158,7 +158,7 @@ def _passed(task: Task, best: float | None, words: Words) -> str:
     if not task.best:
         return words("lesson.passed")
     unit = QUANTITIES.get(task.best, "")
-    return words("lesson.passed_best", best=number(best, words), unit=unit)
+    return words("lesson.passed_best", best=words.number(best, 3), unit=unit)
 
 
 def _figure(

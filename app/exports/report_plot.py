@@ -14,7 +14,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from onpath.app.common.palette import OF_SIDE, SELECTED
-from onpath.app.view.curve_words import number
 from onpath.lessons.action_schema import RobotName
 from onpath.lessons.progress import Answer, Truth
 from onpath.lessons.record import QUANTITIES
@@ -69,7 +68,7 @@ def _label(axes: Axes, sketch: Sketch, words: Words) -> None:
     quantity = words(f"quantity.{sketch.quantity}")
     axes.set_ylabel(f"{quantity}\n[{QUANTITIES[sketch.quantity]}]")
     for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_formatter(lambda value, _: number(value, words))
+        axis.set_major_formatter(lambda value, _: words.number(value, 3))
     axes.grid(alpha=0.3)
     axes.spines[["top", "right"]].set_visible(False)
     if axes.lines:

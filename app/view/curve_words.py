@@ -14,11 +14,6 @@ from onpath.lessons.sides import ROLES
 from onpath.lessons.words import Words
 
 
-def number(value: float, words: Words) -> str:
-    """Format a number with three significant digits, as a language writes it."""
-    return words.number(value, 3)
-
-
 def curve_words(
     block: Sketch,
     answer: Answer | None,
@@ -48,4 +43,4 @@ def curve_words(
 def _peak(times: tuple[float, ...], values: tuple[float, ...], words: Words) -> tuple[str, str]:
     """The value farthest from zero and its time, formatted."""
     at = int(np.argmax(np.abs(values)))
-    return number(values[at], words), number(times[at], words)
+    return words.number(values[at], 3), words.number(times[at], 3)
