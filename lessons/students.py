@@ -30,8 +30,8 @@ STUDENTS = 100
 """Students of a task who draw at random."""
 MOST_PASS = 10
 """How many of them may pass."""
-PANELS = {"flexible": ("output", "alpha")}
-"""Parameters on panels that a step shows under one name."""
+GROUPS = {"flexible": ("output", "alpha")}
+"""Parameters that a step shows under one name."""
 POINTS = 8
 """Control points of a preset path, of which a student moves any."""
 REACH = 60.0
@@ -52,7 +52,7 @@ class Controls:
         scene = lesson.scene_at(index)
         known = specs(ROBOTS[scene.robot or lesson.front.robot].parameters)
         only = [check.names for check in task.check if isinstance(check, Only)]
-        shown = [each for name in scene.controls for each in PANELS.get(name, (name,))]
+        shown = [each for name in scene.controls for each in GROUPS.get(name, (name,))]
         names = [name for name in shown if name in known and all(name in each for each in only)]
         settings = [check for check in task.check if isinstance(check, Setting)]
         wanted = {check.name: check.equals for check in settings if check.equals is not None}

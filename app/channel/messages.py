@@ -2,7 +2,7 @@
 
 A message is a JSON object, whose `is` names its kind. The others are defined by subject in the
 files `…_messages.py` of this folder. Commands, which have `do` instead, are those of
-`app/lab/commands`. `assets/web/channel/messages.ts` is made of all of them by `typescript.py`.
+`app/lab/commands`. `typescript.py` makes `assets/web/channel/messages.ts` from all of them.
 Lists of robots have the left one first.
 """
 

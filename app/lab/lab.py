@@ -40,7 +40,7 @@ PATIENCE = 15  # frames that a lab waits before it says so
 class Command:
     """A command to a lab: a frozen record that knows how to apply itself.
 
-    Widgets, keys, the mouse and the teacher's page make commands in any thread and pass them to
+    Fields, keys, the mouse and the teacher's page make commands in any thread and pass them to
     `Lab.post`. The contents of a command are checked once, when it is applied.
 
     Attributes:
@@ -332,8 +332,8 @@ class Lab:
     def _foreseen(self) -> Message | None:
         """A problem with the settings that is foreseen before the robots run, or None.
 
-        The panel of a flexible link shows its zero dynamics itself. While a prediction is pending,
-        only the caution of the robot's catalogue entry is given.
+        The zero dynamics of a flexible link are shown at its settings. While a prediction is
+        pending, only the caution of the robot's catalogue entry is given.
         """
         simulation, robot = self.simulation, self.simulation.robot
         caution = simulation.entry.caution(simulation.parameters)

@@ -6,6 +6,7 @@ import asyncio
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Literal
 
 from msgspec import Struct
 from typing_extensions import override
@@ -69,10 +70,16 @@ class ChannelDelivery(Delivery):
     def failed(self, name: str, words: Words) -> None:
         self._news.append(self._message(name, "failed", words))
 
-    def _message(self, name: str, state: str, words: Words, size: int = 0) -> DownloadMessage:
-        key = {"making": "making", "coming": "ready", "failed": "failed"}[state]
+    def _message(
+        self,
+        name: str,
+        state: Literal["making", "coming", "failed"],
+        words: Words,
+        size: int = 0,
+    ) -> DownloadMessage:
+        key = "ready" if state == "coming" else state
         text = words(f"export.{key}", name=name)
-        return DownloadMessage(self._number, name, state, text, size)  # type: ignore[arg-type]
+        return DownloadMessage(self._number, name, state, text, size)
 
     def take(self) -> list[Struct]:
         """The messages that the page is told next."""

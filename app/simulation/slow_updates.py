@@ -1,4 +1,4 @@
-"""Spreads the slow updates of all pages (traces, plots, panels, texts) over the frames.
+"""Spreads the slow updates of all pages (traces, plots, fields, texts) over the frames.
 
 They take the time that is left in a frame after simulating and drawing the robots, so that more
 labs means fewer of these updates, not fewer pictures.

@@ -21,18 +21,18 @@ class MessageSchemas:
     """The messages that a browser may send.
 
     Args:
-        forms: their dataclasses. A valid message is a msgpack map with the class name as "type".
+        kinds: their dataclasses. A valid message is a msgpack map with the class name as "type".
         max_magnitude: of any number.
     """
 
-    def __init__(self, forms: Iterable[type[Any]], max_magnitude: float) -> None:
+    def __init__(self, kinds: Iterable[type[Any]], max_magnitude: float) -> None:
         self._limit = msgspec.Meta(ge=-max_magnitude, le=max_magnitude)  # NaN is neither
         whole = int(max_magnitude)
         self._whole_limit = msgspec.Meta(ge=-whole, le=whole)
-        structs = {self._struct(form): form for form in forms}
+        structs = {self._struct(kind): kind for kind in kinds}
         self._decoder = msgspec.msgpack.Decoder(Union[tuple(structs)])  # noqa: UP007
         self._names = frozenset(struct.__name__ for struct in structs)
-        self._forms: dict[type[Any], type[Any]] = structs
+        self._kinds: dict[type[Any], type[Any]] = structs
 
     def decoded(self, raw: bytes | str) -> Any:
         """The message in the bytes of a websocket message.
@@ -53,16 +53,16 @@ class MessageSchemas:
             raise InvalidMessage("bytes that are no message") from error
         if not _is_coherent(found):
             raise InvalidMessage(f"{type(found).__name__} with incoherent values")
-        return self._forms[type(found)](**msgspec.structs.asdict(found))
+        return self._kinds[type(found)](**msgspec.structs.asdict(found))
 
-    def _struct(self, form: type[Any]) -> type[msgspec.Struct]:
-        hints, fields = get_type_hints(form), list[Any]()
-        for field in dataclasses.fields(form):
+    def _struct(self, kind: type[Any]) -> type[msgspec.Struct]:
+        hints, fields = get_type_hints(kind), list[Any]()
+        for field in dataclasses.fields(kind):
             known = field.default is not dataclasses.MISSING
-            kind = self._bounded(hints[field.name])
-            fields.append((field.name, kind, field.default) if known else (field.name, kind))
+            hint = self._bounded(hints[field.name])
+            fields.append((field.name, hint, field.default) if known else (field.name, hint))
         return msgspec.defstruct(
-            form.__name__, fields, tag=True, forbid_unknown_fields=True, kw_only=True
+            kind.__name__, fields, tag=True, forbid_unknown_fields=True, kw_only=True
         )
 
     def _bounded(self, hint: Any) -> Any:
@@ -74,7 +74,7 @@ class MessageSchemas:
         origin, kinds = get_origin(hint), get_args(hint)
         if origin is None or origin is Literal:
             return hint
-        bounded = tuple(kind if kind is ... else self._bounded(kind) for kind in kinds)
+        bounded = tuple(each if each is ... else self._bounded(each) for each in kinds)
         return Union[bounded] if origin is Union else origin[bounded]  # noqa: UP007
 
 

@@ -27,7 +27,7 @@ FROM_BROWSER: tuple[type[Any], ...] = (
     wire.SceneNodeDragMessage,
     wire.LocalStorageGetItemResponseMessage,
 )
-"""What a browser may send; viser's pages have no widgets, whose messages are refused, too."""
+"""What a browser may send through viser's websocket; anything else is dropped."""
 GESTURES = (wire.ViewerCameraMessage, wire.SceneNodeDragMessage)
 """Messages handled at once: a browser may send many in a row, and their handlers never wait."""
 LONG = 4096  # [B]; a message counts once more for every so many bytes
@@ -88,7 +88,7 @@ class UnfinishedMessages:
 
 
 @cache
-def _forms(max_magnitude: float) -> MessageSchemas:
+def _schemas(max_magnitude: float) -> MessageSchemas:
     return MessageSchemas(FROM_BROWSER, max_magnitude)
 
 
@@ -114,7 +114,7 @@ class SecureConnection(CountedConnection):
         self, *args: Any, limits: Limits, unfinished: UnfinishedMessages, **kwargs: Any
     ) -> None:
         super().__init__(*args, **kwargs)
-        self._limits, self._forms = limits, _forms(limits.max_magnitude)
+        self._limits, self._schemas = limits, _schemas(limits.max_magnitude)
         self._allowance = Allowance(limits.message_burst, limits.messages_per_second)
         self._drags = Allowance(limits.change_burst, limits.changes_per_second)
         self._commands = Allowance(limits.change_burst, limits.changes_per_second)
@@ -188,7 +188,7 @@ class SecureConnection(CountedConnection):
         Raises:
             InvalidMessage: the message is invalid, or there were too many of its kind.
         """
-        message = self._forms.decoded(raw)
+        message = self._schemas.decoded(raw)
         if isinstance(message, wire.SceneNodeDragMessage) and not self._drags.take():
             self._close_flood(f"{self._limits.changes_per_second:g} changes")
             raise InvalidMessage("a flood of changes")

@@ -1,9 +1,8 @@
 """Protects a viser server from untrusted browsers.
 
 Data from a browser passes the handshake (request_filter.py) and the websocket
-(secure_connection.py: size, rate and kind; message_schema.py: fields and types). A page has no
-widgets of viser's, so messages about widgets and files are dropped like all that no browser may
-send. Exceptions in callbacks are logged (error_log.py).
+(secure_connection.py: size, rate and kind; message_schema.py: fields and types). Exceptions in
+callbacks are logged (error_log.py).
 """
 
 from __future__ import annotations

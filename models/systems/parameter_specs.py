@@ -53,7 +53,7 @@ class Spec:
     Attributes:
         group: "basic", "gains", "task", "path", "realism" or "robot"; the lab's own settings have
             groups of their own.
-        label: name on a widget.
+        label: name on a page.
         unit: of its value everywhere, SI where there is one; "" for none.
         low, high, step: range of a number.
         options: of a choice, (False, True) of a switch; empty for a number.

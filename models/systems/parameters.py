@@ -1,6 +1,6 @@
 """The numbers and choices of every robot, each declared once with unit, range and help.
 
-Widgets, the command line and files are generated from these declarations. Gains and task are in
+Forms, the command line and files are generated from these declarations. Gains and task are in
 law_parameters.py; parameters of a single robot or law are in its module.
 """
 

@@ -1,4 +1,4 @@
-"""A figure as plain data: what its page shows, and the number that each widget sets."""
+"""A figure as plain data: what its page shows, and the number that each field sets."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ from onpath.app.lab import commands
 from onpath.app.lab.commands.path import MOST_STROKE_POINTS
 from onpath.app.lab.lab import Command
 
-MOST_TEXT = 2000  # [characters], as in a text widget
+MOST_TEXT = 2000  # [characters], as in a text field
 LARGEST = 1e9  # magnitude of a number
 LONGEST = 250_000  # [characters] of a message: a stroke of `MOST_STROKE_POINTS`, with all digits
 MOST_WHY = 200  # [characters] of a reason

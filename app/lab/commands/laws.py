@@ -39,7 +39,7 @@ class ChooseLaw(Command):
 
 @dataclass(frozen=True, slots=True)
 class TypeLaw(Command):
-    """Change to a law that the user has typed; if it is refused, its panel says why.
+    """Change to a law that the user has typed; if it is refused, its field says why.
 
     Attributes:
         side: see `ChooseLaw`.

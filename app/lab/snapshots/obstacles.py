@@ -1,4 +1,4 @@
-"""The wall, the brakes and the start of a lab, as its scene draws them and its panels show them."""
+"""The wall, the brakes and the start of a lab, as its scene draws them and its page shows them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Snapshot for a whole page: the scene, the plots and the panels of one lab at one instant."""
+"""Snapshot for a whole page: the scene, the plots and the fields of one lab at one instant."""
 
 from __future__ import annotations
 
