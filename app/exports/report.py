@@ -120,7 +120,7 @@ def _record(chapter: Chapter, words: Words) -> ChapterRecord:
             (notes.seen, len(lesson.steps)),
             (len(notes.tasks), len(tasks)),
             (made, len(asked)),
-            (sum(chosen), len(chosen)),
+            (sum(chosen.values()), len(chosen)),
         ),
         foreign=lesson.language == DEFAULT != words.language,
         predictions=[_asked(chapter, key, block, words) for key, block in asked.items()],

@@ -24,7 +24,7 @@ from onpath.lessons.concept_test.concept_test import BEFORE
 from onpath.lessons.concept_test.on_route import last_test
 from onpath.lessons.concept_test.titles import titles_of_tests
 from onpath.lessons.progress import Answer, Truth
-from onpath.lessons.schema import Choice, Prediction, Sketch
+from onpath.lessons.schema import Prediction, Sketch
 from onpath.lessons.sides import robot_names
 from onpath.lessons.words import Words
 
@@ -46,13 +46,7 @@ class EndedPart:
 
     def chosen(self) -> list[bool]:
         """For each choice whose result has been seen, whether it was right."""
-        asked, answers = self.predictions(), self.chapter.notes.answers
-        return [
-            block.options[answers[key].option or 0].right
-            for key, block in asked.items()
-            if isinstance(block, Choice) and self.chapter.happened(key)
-            if key in answers and answers[key].option is not None
-        ]
+        return [right for key, right in self.chapter.chosen().items() if self.has(key)]
 
     def drawn(self) -> list[bool]:
         """For each curve that was asked for, whether the student has drawn it."""

@@ -36,12 +36,6 @@ class LessonView(LessonState):
         self.pace, self.presenting = shown.pace, shown.presenting
 
     @property
-    def laws_shown(self) -> dict[str, str]:
-        """Control laws under which the open step's prediction is tested."""
-        lesson, found = self.lesson, self.prediction()
-        return {} if lesson is None or found is None else lesson.laws_shown(int(found[0]))
-
-    @property
     def shows_next(self) -> bool:
         """Whether the open step's prediction is made and the next step runs the experiment."""
         lesson = self.lesson

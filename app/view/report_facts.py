@@ -50,16 +50,16 @@ class Chapter:
         """Whether the predicted experiment has been observed."""
         return key in self.notes.truths
 
-    def chosen(self) -> list[bool]:
-        """Whether each choice whose result has been observed is right."""
+    def chosen(self) -> dict[str, bool]:
+        """Whether each choice whose result has been observed is right, by note key."""
         asked = predictions(self.lesson)
-        return [
-            block.options[answer.option].right
+        return {
+            key: block.options[answer.option].right
             for key, answer in self.notes.answers.items()
             if isinstance(block := asked[key], Choice)
             and answer.option is not None
             and self.happened(key)
-        ]
+        }
 
 
 def chapters(run: LessonState) -> list[Chapter]:

@@ -53,7 +53,7 @@ class ClassAnswers:
     def view(self, large: bool) -> str:
         """The answers to the prediction of the displayed step, or to a question of a test."""
         steps = StepsForAll(self._course, self._words.language)
-        name, index = steps.shown(self._teaching.classroom.display)
+        name, index = steps.shown(self._display)
         lesson = self._course.lesson(name, self._words.language)
         members = self._teaching.classroom.members().values()
         students = [of_today(self._course, member.progress) for member in members]

@@ -69,3 +69,11 @@ class TeacherContext:
     delete: Callable[[str], None]
     forget: Callable[[], int]
     stop: Callable[[], None]
+
+    def pace(self, displayed: str) -> Pace:
+        """The steps that are chosen, else those within which the class is kept.
+
+        Args:
+            displayed: the lesson whose first step is chosen if there are neither.
+        """
+        return self.chosen.pace or self.classroom.orders.pace or Pace(displayed, 0, 0)

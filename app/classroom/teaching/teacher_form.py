@@ -273,8 +273,7 @@ class TeacherForm:
 
     @property
     def _chosen_pace(self) -> Pace:
-        kept = self._teaching.classroom.orders.pace
-        return self._choices.pace or kept or Pace(self._shown[0], 0, 0)
+        return self._teaching.pace(self._shown[0])
 
     def _step_options(self, lesson: str) -> dict[str, int]:
         titles = step_titles(self._course.lesson(lesson, self._words.language), self._words)

@@ -176,9 +176,7 @@ class TeacherOrders:
 
     @property
     def _pace(self) -> Pace:
-        """The steps that are chosen."""
-        lesson, _ = self._steps.shown(self._class.display)
-        return self._chosen.pace or self._class.orders.pace or Pace(lesson, 0, 0)
+        return self._teaching.pace(self._steps.shown(self._class.display)[0])
 
     def _display(self, lesson: str, step: int) -> None:
         """Display a step, with its answers hidden."""
