@@ -1,4 +1,4 @@
-"""Builds pages one at a time with pauses, so that a burst of arrivals does not stall open pages."""
+"""Builds scenes one at a time with pauses, so that many arrivals do not stall open pages."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from contextlib import contextmanager, suppress
 from onpath.app.common.error_log import log_error
 from onpath.app.common.on_time import wait_until_on_time
 
-REST = 2.0  # rest of a build, relative to its duration; sending the page takes time as well
+REST = 2.0  # rest of a build, relative to its duration; sending the scene takes time as well
 LONG = 0.5  # [s]; longer builds rest no longer than one of this duration
 CALM = 1.0  # [s] without a build, after which the next one need not rest between its parts
 PATIENCE = 0.1  # [s] that a part of a build waits at most while frames are late
@@ -62,12 +62,12 @@ class BuildLock:
 
 
 one_at_a_time = BuildLock()
-"""Held while a page is built or rebuilt, but never while waiting for a browser."""
+"""Held while a scene is built or rebuilt, but never while waiting for a browser."""
 
 
 @contextmanager
 def in_turn() -> Iterator[None]:
-    """Build a page or part of one, one at a time and with rests, however many tabs ask for it."""
+    """Build a scene or part of one, one at a time and with rests, however many tabs ask for it."""
     with one_at_a_time:
         try:
             yield
@@ -76,22 +76,22 @@ def in_turn() -> Iterator[None]:
 
 
 class BuildQueue:
-    """Builds the pages of new clients in order of arrival.
+    """Builds the scenes of new clients in order of arrival.
 
     Uses its own thread, because viser's thread pool must stay free for the callbacks of clients
-    that already have a page.
+    that already have a scene.
     """
 
     def __init__(self) -> None:
-        self._pool = ThreadPoolExecutor(1, "pages")
+        self._pool = ThreadPoolExecutor(1, "scenes")
 
     def submit(self, build: Callable[[], None]) -> None:
-        """Queue the build of a page; it is called even if its client has disconnected by then."""
+        """Queue the build of a scene; it is called even if its client has disconnected by then."""
         with suppress(RuntimeError):  # the server has stopped
             self._pool.submit(_build, build)
 
     def stop(self) -> None:
-        """Finish the page under construction and discard the queue."""
+        """Finish the scene under construction and discard the queue."""
         self._pool.shutdown(cancel_futures=True)
 
 

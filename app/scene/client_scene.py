@@ -31,13 +31,13 @@ from onpath.models.arrays import Array
 from onpath.models.systems.robots import Robot
 
 SETTLING = 30
-"""Slow updates for which the camera is fitted again and again, after the canvas has changed."""
+"""Slow updates during which the camera is fitted repeatedly, after the canvas has changed."""
 REFIT = 10
-"""Every how many of them."""
+"""Slow updates from one such fit to the next."""
 TITLES, MOST_TITLES = 44.0, 0.1
-"""Height of the robots' titles over the scene, [px], and at most, as a share of the canvas."""
+"""Height of the robots' titles over the scene [px], and its largest share of the canvas."""
 NEAR = 1e-3
-"""Distance from where the camera was put at which it is there, as a share of that to the robots."""
+"""How far from its place a camera counts as there, relative to its distance from the robots."""
 
 Post = Callable[[c.Command], None]
 """Takes a command."""
@@ -45,11 +45,11 @@ Post = Callable[[c.Command], None]
 
 @dataclass(slots=True)
 class Look:
-    """How a browser's scene is to be drawn.
+    """How a browser's scene is drawn.
 
     Attributes:
         dark: whether the browser asks for dark pages; this may change.
-        plain: whether it draws in software, so that the scene must be quickly drawn.
+        plain: whether it draws in software, so that the scene must be simple.
         upright: whether the window is, so that letters must be larger; this may change.
     """
 
@@ -63,15 +63,15 @@ class ClientScene:
 
     Args:
         first: the initial snapshot.
-        number: by which the page knows this client among all that it has asked for.
-        look: how it is to be drawn.
+        number: tells this client from the others that the page has asked for.
+        look: how it is drawn.
         course: the lessons, whose steps switch drawings on.
         post: takes the commands of the mouse; those on another's lab are ignored.
         switches: names of the drawings that are switched on; see `Overlays`.
 
     Attributes:
         client, number, switches: see above.
-        is_outdated: whether it must be rebuilt, for which it needs a complete snapshot.
+        is_outdated: whether it must be rebuilt, which takes a complete snapshot.
         pull: name of the plane in which the mouse pulls end-points; the stage's first if it has
             none of this name.
     """
@@ -160,7 +160,7 @@ class ClientScene:
         return self._overlays
 
     def _key(self, key: PageKey) -> tuple[object, ...]:
-        """What the scene depends on; a change has it rebuilt."""
+        """What the scene depends on; it is rebuilt when this changes."""
         return key.student, key.robot, key.plane, self._look.dark, self._look.upright
 
     def _renew(self, snapshot: PageSnapshot | Motion) -> None:
@@ -172,12 +172,9 @@ class ClientScene:
 
     def _rebuild(self, first: PageSnapshot) -> None:
         with in_turn(), self.client.atomic():
-            self._clear()
+            clear_scene(self.client)
             self.settle()
             self._build(first)
-
-    def _clear(self) -> None:
-        clear_scene(self.client)
 
     def _build(self, first: PageSnapshot) -> None:
         look, robot = self._look, robot_of(first)

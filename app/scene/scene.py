@@ -166,7 +166,7 @@ class Scene:
         self._start.show(visible)
 
     def frame_camera(self, insets: Insets | None = None) -> None:
-        """Point the client's camera so that both robots fill the canvas left free by panels."""
+        """Point the client's camera so that both robots fill the canvas within its margins."""
         camera = self._client.camera
         size = (max(camera.image_width, 1), max(camera.image_height, 1))
         pose = view_of(self._stage, size, insets or Insets())

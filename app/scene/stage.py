@@ -132,7 +132,7 @@ class Stage:
 
 @dataclass(frozen=True, slots=True)
 class Insets:
-    """Width of the canvas covered by panels at each side [px]."""
+    """Width of the margin that the robots leave free at each side of the canvas [px]."""
 
     left: float = 0.0
     right: float = 0.0
@@ -148,11 +148,11 @@ class Pose:
 
 
 def view_of(stage: Stage, size: tuple[float, float], insets: Insets) -> Pose:
-    """The camera that shows all robots as large as the uncovered part of the canvas allows.
+    """The camera that shows all robots as large as the canvas allows within its margins.
 
     Args:
         size: width and height of the canvas [px].
-        insets: margins covered by panels.
+        insets: margins that the robots leave free.
     """
     width, height = size
     ce, se = np.cos(stage.elevation), np.sin(stage.elevation)

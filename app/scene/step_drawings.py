@@ -1,4 +1,4 @@
-"""What a lesson's step asks of the scene when it is opened."""
+"""The drawings and marks that a lesson's step asks for when it is opened."""
 
 from __future__ import annotations
 

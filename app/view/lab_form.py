@@ -154,7 +154,7 @@ def form_of(snapshot: PageSnapshot, setup: StepSetup | None, words: Words) -> Fo
 
 
 def drawn_form(snapshot: PageSnapshot, words: Words) -> FormMessage:
-    """The form of a lab at which one can only look."""
+    """The form of another's lab, which only switches drawings."""
     return _drawn_form(snapshot.key.robot, words)
 
 

@@ -10,7 +10,7 @@ from onpath.lessons.sides import side_titles
 from onpath.lessons.words import Words
 
 NEVER = 1e9
-"""Stands for a limit that there is not."""
+"""Stands for a limit that does not exist."""
 
 
 def alpha_note(

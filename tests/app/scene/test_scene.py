@@ -286,7 +286,7 @@ def test_traces_are_connected_and_end_at_the_newest_point(length):
 @pytest.mark.parametrize("size", [(1400, 800), (390, 844), (2560, 600)])
 @pytest.mark.parametrize("insets", [Insets(), Insets(left=60, right=90, top=200)])
 @pytest.mark.parametrize("stage", STAGES.values(), ids=STAGES)
-def test_camera_shows_both_robots_clear_of_the_panels(size, insets, stage: Stage):
+def test_camera_shows_both_robots_clear_of_the_margins(size, insets, stage: Stage):
     pose = view_of(stage, size, insets)
     x, y = in_picture(pose, stage.corners, size)
     slack = 2.0
