@@ -19,7 +19,7 @@ from onpath.app.scene.overlays import Overlays
 from onpath.app.scene.pointer_projection import plane_coordinates
 from onpath.app.scene.projection import seen_by, seen_from
 from onpath.app.scene.scene import Scene
-from onpath.app.scene.stage import Insets, view_of
+from onpath.app.scene.stage import view_of
 from onpath.app.scene.stage_catalogue import IN_PATH_PLANE, stage_of
 from onpath.app.scene.step_drawings import StepDrawings
 from onpath.app.scene.tones import DARK, LIGHT
@@ -149,7 +149,7 @@ class ClientScene:
         robot = robot_of(snapshot)
         stage = stage_of(robot)
         width, height = max(camera.image_width, 1), max(camera.image_height, 1)
-        pose = view_of(stage, (width, height), _insets(height))
+        pose = view_of(stage, (width, height), _top(height))
         off, away = (np.linalg.norm(x - pose.position) for x in (camera.position, pose.look_at))
         self._is_placed = bool(off < NEAR * away) or not self._settling
         return seen_from(pose, stage, robot)
@@ -230,12 +230,12 @@ class ClientScene:
         shape = width / max(height, 1)
         if width > 0 and abs(shape - self._framed) > 0.01 * shape:
             self._framed = shape
-            self._scene.frame_camera(_insets(height))
+            self._scene.frame_camera(_top(height))
 
 
-def _insets(height: float) -> Insets:
-    """Margins of the canvas, for the robots' titles."""
-    return Insets(top=min(TITLES, MOST_TITLES * height))
+def _top(height: float) -> float:
+    """How much of a canvas the robots' titles cover, [px]."""
+    return min(TITLES, MOST_TITLES * height)
 
 
 def _callbacks(post: Post, robot: Robot) -> SceneCallbacks:

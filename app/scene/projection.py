@@ -6,14 +6,14 @@ import numpy as np
 import viser
 from viser.transforms import SO3
 
-from onpath.app.scene.stage import FIELD_OF_VIEW, FIRST_SIZE, Insets, Pose, Stage, view_of
+from onpath.app.scene.stage import FIELD_OF_VIEW, FIRST_SIZE, Pose, Stage, view_of
 from onpath.app.view.state_message import Projection
 from onpath.models.systems.robots import Robot
 
 
 def seen_at_first(stage: Stage, robot: Robot) -> Projection:
     """How the robots of a stage are seen before a camera has reported; see `set_initial_camera`."""
-    return seen_from(view_of(stage, FIRST_SIZE, Insets()), stage, robot)
+    return seen_from(view_of(stage, FIRST_SIZE), stage, robot)
 
 
 def seen_by(camera: viser.CameraHandle, stage: Stage, robot: Robot) -> Projection:

@@ -23,7 +23,6 @@ from onpath.app.scene.robot_nodes import RobotNodes
 from onpath.app.scene.stage import (
     FIELD_OF_VIEW,
     ChangingText,
-    Insets,
     Stage,
     Titles,
     build_stage,
@@ -165,11 +164,11 @@ class Scene:
         """Show the start of the next run, which can be dragged, or hide it."""
         self._start.show(visible)
 
-    def frame_camera(self, insets: Insets | None = None) -> None:
-        """Point the client's camera so that both robots fill the canvas within its margins."""
+    def frame_camera(self, top: float) -> None:
+        """Point the client's camera so that both robots fill the canvas below a margin [px]."""
         camera = self._client.camera
         size = (max(camera.image_width, 1), max(camera.image_height, 1))
-        pose = view_of(self._stage, size, insets or Insets())
+        pose = view_of(self._stage, size, top)
         place_camera(self._client, pose.position, pose.look_at, UP, float(FIELD_OF_VIEW))
 
     def begin_freehand(self, on_stroke: Callable[[np.ndarray], None]) -> None:

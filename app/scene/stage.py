@@ -131,15 +131,6 @@ class Stage:
 
 
 @dataclass(frozen=True, slots=True)
-class Insets:
-    """Width of the margin that the robots leave free at each side of the canvas [px]."""
-
-    left: float = 0.0
-    right: float = 0.0
-    top: float = 0.0
-
-
-@dataclass(frozen=True, slots=True)
 class Pose:
     """A camera's position and the point it looks at, shape (3,) each, [m]."""
 
@@ -147,12 +138,12 @@ class Pose:
     look_at: np.ndarray
 
 
-def view_of(stage: Stage, size: tuple[float, float], insets: Insets) -> Pose:
-    """The camera that shows all robots as large as the canvas allows within its margins.
+def view_of(stage: Stage, size: tuple[float, float], top: float = 0.0) -> Pose:
+    """The camera that shows all robots as large as the canvas allows below a margin.
 
     Args:
         size: width and height of the canvas [px].
-        insets: margins that the robots leave free.
+        top: height of the margin [px].
     """
     width, height = size
     ce, se = np.cos(stage.elevation), np.sin(stage.elevation)
@@ -166,26 +157,23 @@ def view_of(stage: Stage, size: tuple[float, float], insets: Insets) -> Pose:
     x, y, z = (seen - middle).T
     tan_y = np.tan(FIELD_OF_VIEW / 2)
     tan_x = tan_y * width / height
-    # tangents of the angles from the axis to the margins, and half of their sums
-    leftward = tan_x * (1 - 2 * insets.left / width)
-    rightward = tan_x * (1 - 2 * insets.right / width)
-    upward = tan_y * (1 - 2 * insets.top / height)
-    half_x = max(leftward + rightward, 0.4 * tan_x) / 2
+    # tangent of the angle from the axis up to the margin, and half of its sum with tan_y
+    upward = tan_y * (1 - 2 * top / height)
     half_y = max(upward + tan_y, 0.4 * tan_y) / 2
-    # all points are between the margins if the camera, moved aside, is as far away as each needs
-    across = np.maximum(-x - leftward * z, x - rightward * z) / half_x
+    # all points are below the margin if the camera, moved up, is as far away as each needs
+    across = np.abs(x) / tan_x - z
     up_and_down = np.maximum(-y - tan_y * z, y - upward * z) / half_y
     distance = float(max(across.max(), up_and_down.max()))
-    aside, above = (rightward - leftward) / 2 * distance, (upward - tan_y) / 2 * distance
+    above = (upward - tan_y) / 2 * distance
     room = np.min(upward * (distance + z) - y - above)
     above += HIGHER * max(room, 0.0)
-    target = centre - aside * right - above * up
+    target = centre - above * up
     return Pose(target - distance * forward, target)
 
 
 def set_initial_camera(server: viser.ViserServer, stage: Stage) -> None:
     """Set the camera with which new clients open, before their canvas size is known."""
-    pose = view_of(stage, FIRST_SIZE, Insets())
+    pose = view_of(stage, FIRST_SIZE)
     server.initial_camera.fov = FIELD_OF_VIEW
     server.initial_camera.position = pose.position
     server.initial_camera.look_at = pose.look_at

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from viser.transforms import SO3
 
 from onpath.app.scene.projection import projections, seen_from
-from onpath.app.scene.stage import FIELD_OF_VIEW, Insets, view_of
+from onpath.app.scene.stage import FIELD_OF_VIEW, view_of
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.models.systems.catalogue import ROBOTS
 
@@ -42,7 +42,7 @@ def test_titles_and_bars_are_known_before_the_picture_is(name, size):
     """Before its camera is in place, a picture is told to show what it then shows."""
     robot = ROBOTS[name].make(ROBOTS[name].parameters())
     stage = stage_of(robot)
-    pose = view_of(stage, size, Insets())
+    pose = view_of(stage, size)
     seen = seen_from(pose, stage, robot)
     forward = (pose.look_at - pose.position) / np.linalg.norm(pose.look_at - pose.position)
     scale = 1 / (2 * np.tan(FIELD_OF_VIEW / 2))

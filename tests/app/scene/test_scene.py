@@ -30,7 +30,7 @@ from onpath.app.scene.mouse import SceneCallbacks
 from onpath.app.scene.poses import trace_segments
 from onpath.app.scene.robot_nodes import FORCE, TRACE_SEGMENTS
 from onpath.app.scene.scene import Scene
-from onpath.app.scene.stage import FIELD_OF_VIEW, Insets, Pose, Stage, view_of
+from onpath.app.scene.stage import FIELD_OF_VIEW, Pose, Stage, view_of
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.models.control.sides import DEFAULT_LAWS, LEFT, RIGHT, SIDES
 from onpath.models.paths.curves import TABLE_SHAPE, circle
@@ -284,16 +284,15 @@ def test_traces_are_connected_and_end_at_the_newest_point(length):
 
 
 @pytest.mark.parametrize("size", [(1400, 800), (390, 844), (2560, 600)])
-@pytest.mark.parametrize("insets", [Insets(), Insets(left=60, right=90, top=200)])
+@pytest.mark.parametrize("top", [0, 200])
 @pytest.mark.parametrize("stage", STAGES.values(), ids=STAGES)
-def test_camera_shows_both_robots_clear_of_the_margins(size, insets, stage: Stage):
-    pose = view_of(stage, size, insets)
+def test_camera_shows_both_robots_below_the_margin(size, top, stage: Stage):
+    pose = view_of(stage, size, top)
     x, y = in_picture(pose, stage.corners, size)
     slack = 2.0
-    assert x.min() > insets.left - slack and x.max() < size[0] - insets.right + slack
-    assert y.min() > insets.top - slack and y.max() < size[1] + slack
-    free = size[0] - insets.left - insets.right, size[1] - insets.top
-    widest = max(np.ptp(x) / free[0], np.ptp(y) / free[1])
+    assert x.min() > -slack and x.max() < size[0] + slack
+    assert y.min() > top - slack and y.max() < size[1] + slack
+    widest = max(np.ptp(x) / size[0], np.ptp(y) / (size[1] - top))
     assert widest > 0.8
 
 
@@ -304,7 +303,7 @@ def test_camera_shows_both_robots_clear_of_the_margins(size, insets, stage: Stag
 def test_there_is_room_to_pull(size: tuple[int, int], name: str) -> None:
     """A quarter of the distance between the robots is free around their usual paths."""
     stage, robot = STAGES[name], ROBOTS[name].make(ROBOTS[name].parameters())
-    pose = view_of(stage, size, Insets())
+    pose = view_of(stage, size)
     apart = float(np.linalg.norm(np.ptp(stage.origins, axis=0)))
     far = 0.05 + 0.25 * apart
     around = robot.position(robot.frame.lift(far * np.array([(1, 0), (-1, 0), (0, 1), (0, -1)])))
