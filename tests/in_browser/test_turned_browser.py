@@ -14,6 +14,7 @@ from playwright.sync_api import Browser
 from onpath.app.lab import commands as c
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.server.lab_server import LabServer
+from tests.support import browser as support
 from tests.support.browser import Tab, wait_for
 
 pytestmark = pytest.mark.thorough
@@ -27,7 +28,9 @@ SHEET = "#op-panel.open"
 @pytest.fixture(scope="module")
 def tab(browser: Browser, server: LabServer) -> Iterator[Tab]:
     context = browser.new_context()
-    tab = Tab(server, context, draws=False)
+    with pytest.MonkeyPatch.context() as patch:  # fewer pixels round the canvas
+        patch.setattr(support, "COARSER", support.COARSE)
+        tab = Tab(server, context, draws=False)
     yield tab
     assert tab.errors == []
     context.close()
