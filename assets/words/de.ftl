@@ -837,22 +837,6 @@ glossary-to_words = Glossar: von den Fachwörtern zu den Wörtern der Lektionen
 glossary-lesson = (Lektion { $number })
 help-close = Schließen
 
-    - **Fasse eine Spitze** und ziehe daran. Mit *Für beide* geht die andere denselben Weg.
-    - **Ziehe an einer kleinen grauen Kugel**, um die Bahn zu verbiegen, während es läuft.
-    - **Wähle für jeden Roboter ein Regelgesetz**, auch während er sich bewegt.
-    - **Ring oder Punkt**: worauf der Regler zielt. Ein Ring ist ein Sollpunkt des Reglers, der zum
-      Beispiel nach der Uhr läuft, ein Punkt mit weißem Rand der nächste Punkt der Bahn.
-    - **Pfeil**: die Kraft von Hand oder Bremse auf die Spitze.
-    - **Drehe die Ansicht** mit der rechten Taste oder zwei Fingern; *Ansicht zurück* stellt sie wieder her.
-    - **Ein neues Labor beginnt langsam**: Das gewünschte Tempo steigt von 0 auf 2 rad/s, deshalb sind
-      beide Roboter von Anfang an auf der Bahn. *Tempo* und *Tempo-Rampe* unter *Weitere* ändern das.
-
-    Eine Taste, die das gerade gewählte Bedienelement selbst braucht, etwa die Pfeile auf einem
-    Schieberegler oder die Leertaste auf einem Knopf, wirkt nur dort.
-
-    | Taste | Was sie tut |
-    |---|---|
-
 ## Was das Labor von selbst sagt
 
 say-stopped = { $robot }: stehen geblieben bei { $time } s: { $reason }. Zurücksetzen beginnt von vorn.

@@ -750,22 +750,6 @@ glossary-to_words = Glossary: from the field's terms to the lessons' words
 glossary-lesson = (Lesson { $number })
 help-close = Close
 
-    - **Drag an end-point** to pull it. *Copy to both* pulls the other one by the same amount.
-    - **Drag a small grey ball** to bend the path while the robots run.
-    - **Choose a control law** for each robot, also while it moves.
-    - **Ring or dot**: what the controller aims at. A ring is a reference point of its own, which may
-      run by the clock; a dot with a white rim is the closest point of the path.
-    - **Arrow**: the force that pulls or holds the end-point.
-    - **Turn the view** with the right button or two fingers; *Reset view* restores it.
-    - **A new lab begins slowly**: the wanted speed rises from 0 to 2 rad/s, so both robots are on the
-      path from the beginning. *Speed* and *Speed ramp* under *Advanced* change that.
-
-    A key that the focused control uses itself, such as the arrows on a slider or the space bar on a
-    button, acts on that control only.
-
-    | Key | What it does |
-    |---|---|
-
 ## Routes through the lessons
 
 route-route = Route

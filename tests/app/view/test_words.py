@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import dataclasses
+import json
 import pickle
 import re
 import sys
@@ -23,6 +24,7 @@ from onpath.app.lab.plot_rows import ROWS
 from onpath.app.storage.records import NotKept
 from onpath.app.view.keys import KEYS
 from onpath.app.view.lab_form import GROUPS, PULLS, SECTIONS
+from onpath.app.view.page_words import words_message
 from onpath.assets import asset_path
 from onpath.assets.messages import catalogue, identifier, languages
 from onpath.lessons.labels import (
@@ -513,6 +515,12 @@ def test_counts_have_plurals_in_every_language() -> None:
 
 
 @pytest.mark.thorough
+@pytest.mark.parametrize("language", languages())
+def test_what_the_page_shows_as_plain_text_is_one_line_without_markdown(language: str) -> None:
+    told = json.loads(words_message(language))["words"]
+    assert not {key: text for key, text in told.items() if re.search(r"\n|[*_]{2}|`", text)}
+
+
 def test_a_count_is_given_as_a_number() -> None:
     """A plural of a text would always be the general one."""
     counted: dict[str, set[str]] = {}
