@@ -60,7 +60,7 @@ def drawing_cost(server: LabServer, browser: str, seconds: float = 15.0) -> Draw
         page = chromium.new_page(viewport=WINDOW)  # type: ignore[arg-type]
         page.add_init_script(COUNT)
         page.goto(f"{server.address}?{SHARP}")
-        page.wait_for_selector("[data-page]", state="attached", timeout=60_000)
+        page.wait_for_function("window.onpathLab?.lab?.scene > 0", timeout=60_000)
         page.wait_for_timeout(5000)  # until all pipelines are compiled
         session = page.context.new_cdp_session(page)
         session.send("Performance.enable")

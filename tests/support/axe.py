@@ -16,16 +16,12 @@ RUN = """async () => (await axe.run({ resultTypes: ["violations"] })).violations
     .filter(each => ["serious", "critical"].includes(each.impact))
     .map(each => [each.id, ...each.nodes.map(node => node.html)])"""
 
-NAMED = """() => [...document.querySelectorAll("[role=slider]")]
-    .every(each => each.getAttribute("aria-label"))"""
-"""Whether assets/page/names.js has seen what is on the page."""
 ROLES: dict[str, Literal["img", "radiogroup"]] = {"canvas": "img", ".options": "radiogroup"}
 """The role that every element of a CSS selector must have."""
 
 
 def violations(tab: Tab) -> list[list[str]]:
     """Serious and critical violations: the rule, and the elements that violate it."""
-    tab.page.wait_for_function(NAMED)
     if not tab.page.evaluate("'axe' in window"):
         tab.page.add_script_tag(path=SCRIPT)
     return tab.page.evaluate(RUN)

@@ -40,13 +40,6 @@ WAIT = 60.0  # [s]; software rendering on a busy machine shows a few frames a se
 
 SEEN = f'localStorage.setItem("viser-user:{KEPT_AS}", "{len(INVITATIONS)}")'
 """Makes a browser one that has seen the first minute."""
-OURS = """{
-    const get = URLSearchParams.prototype.get
-    URLSearchParams.prototype.get = function (name) {
-        return name === "panel" ? "ours" : get.call(this, name)
-    }
-}"""
-"""Chooses the controls, whatever the address."""
 TOLD = "() => [onpathLab.lab.robot, onpathLab.lab.language, onpathLab.lesson?.version ?? 0]"
 """What the page has heard of its lab."""
 TAKEN = "async () => { await onpathLab.ask('display') }"
@@ -124,7 +117,6 @@ class Tab:
         site: str = "",
     ) -> None:
         self.server = server
-        context.add_init_script(OURS)
         if not newcomer:
             context.add_init_script(SEEN)
         if not draws:

@@ -22,7 +22,7 @@ SCENE: Any = {"x": 475, "y": 60, "width": 470, "height": 510}
 """The part of the window with the right robot."""
 WIDTH, QUALITY = 320, 82  # [px] of a picture
 SHOWN = 2.6  # [s], simulated time in the picture
-ALONE = "body > :not(#root), #root [style*='right: 0px'] { visibility: hidden !important; }"
+ALONE = "body > :not(#root) { visibility: hidden !important; }"
 """Hides what stands around the scene."""
 
 

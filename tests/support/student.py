@@ -142,12 +142,6 @@ class Student:
             assert time.monotonic() < end, self.values.keys() | self.buttons.keys()
             self._hear(NEWS)
 
-    def read_what_was_sent(self) -> None:
-        """Read what the server had sent when it heard of this."""
-        for each in (self._data, self._scene):
-            assert each is None or each.ping().wait(PATIENCE)
-        self.read_what_has_come()
-
     def read_what_has_come(self) -> None:
         """Read what has arrived so far, without waiting."""
         self._hear(0.0)
