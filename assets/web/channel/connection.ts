@@ -33,11 +33,11 @@ export class Connection {
     private wasThere = false
     private found: "silent" | "blocked" | null = null // why our websocket does not open
     private final: Final | null = null
-    private asked = Date.now()
+    private asked = performance.now()
     private quiet = 0 // [ms] of looks without a message
     private late = 0 // [ms] of looks at which the lab is too slow
     private slept = false
-    private looked = Date.now()
+    private looked = Date.now() // a page's own time may stand still while it sleeps
     private heard = 0
     private readonly picture = new PictureLink()
 
@@ -54,8 +54,8 @@ export class Connection {
     /** Open what is missing, and say what is; called repeatedly.
      * @param face whether our part of the page is shown */
     look(face: boolean): void {
-        const now = Date.now(), gap = now - this.looked, { engine, picture } = this
-        this.looked = now
+        const now = performance.now(), date = Date.now(), gap = Math.max(date - this.looked, 0), { engine, picture } = this
+        this.looked = date
         if (!this.final) engine.open()
         const isThere = engine.connected && face
         if (isThere) this.wasThere = true
@@ -128,7 +128,7 @@ export class Connection {
     private renew(): void {
         this.quiet = 0
         this.slept = false
-        this.asked = Date.now()
+        this.asked = performance.now()
         this.engine.close()
         this.engine.open()
         this.picture.renew()
@@ -155,7 +155,7 @@ export class Connection {
             sessionStorage.setItem(RELOADED, String(Date.now()))
         } catch {} // a browser without storage asks its user
         this.end("version")
-        if (Date.now() - last > DEAD) location.reload()
+        if (Math.abs(Date.now() - last) > DEAD) location.reload()
     }
 
     private end(final: Final): void {
@@ -207,7 +207,7 @@ class PictureLink {
 
     /** Have viser's page made anew. */
     renew(): void {
-        if (this.state === "open") this.open(Date.now())
+        if (this.state === "open") this.open(performance.now())
     }
 
     private open(now: number): void {
@@ -247,12 +247,12 @@ class PictureLink {
     private hear({ type, versionMismatch }: Heard): void {
         if (type === "connected") {
             this.state = "open"
-            this.missed = Date.now()
+            this.missed = performance.now()
         } else if (type === "closed") {
             if (versionMismatch) this.outdated = true
             const after = this.ended++ ? Math.min(EACH * 2 ** (this.ended - 2), LONGEST) : 0
             this.state = "closed"
-            this.again = Date.now() + after * (0.8 + 0.4 * Math.random()) // a whole class does not come at once
+            this.again = performance.now() + after * (0.8 + 0.4 * Math.random()) // a whole class does not come at once
         }
     }
 }
