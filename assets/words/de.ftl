@@ -1737,10 +1737,7 @@ robot_file-loop = die Glieder bilden eine Schleife: Nur Bäume aus Gliedern lass
 robot_file-apart = kein Gelenk führt von { $name } hierher: Alle Glieder eines Roboters hängen zusammen
 robot_file-twice = den Namen gibt es schon in Zeile { $line }
 robot_file-many = mehr als { $most } davon
-robot_file-joints = Auf dem Weg zur Spitze bewegen sich mehr als { $most } Gelenke: { $names }. Halten Sie einige mit --lock Gelenk=Wert (in Python lock=…)
 robot_file-type = unbekannter Typ { $type }
-robot_file-free = ein Gelenk vom Typ { $type } auf dem Weg zur Spitze kann nicht simuliert werden: Machen Sie es in der Datei fest
-robot_file-mimic = ein Gelenk, das einem anderen folgt, auf dem Weg zur Spitze: Sperren Sie es
 robot_file-outside = { $value } liegt außerhalb der Grenzen von { $low } bis { $high }
 robot_file-mass = die Masse { $value } ist negativ
 robot_file-inertia = kein Körper hat diese Trägheit: Ein Trägheitsmoment um irgendeine Achse ist negativ
@@ -1750,7 +1747,6 @@ robot_file-axis = eine Achse braucht eine Richtung
 robot_file-shape = eine Form braucht positive Maße unter 100 m
 robot_file-still_tip = die Spitze bewegt sich nicht: Kein Gelenk auf dem Weg zu ihr tut es
 robot_file-no_tip = ein Glied { $tip } gibt es nicht, aber { $names }
-robot_file-which_tip = welches Glied ist die Spitze? Nennen Sie eines mit --tip (in Python tip=…): { $names }
 robot_file-no_joint = ein Gelenk { $joint } gibt es nicht, aber { $names }
 robot_file-pose = { $joint }: { $value } ist keine Stellung
 robot_file-pose_outside = { $joint }: { $value } liegt nicht zwischen den Grenzen { $low } und { $high }
@@ -1771,6 +1767,27 @@ robot_file-mujoco_ended = MuJoCo ist beim Lesen von { $file } ausgefallen: Es is
 robot_file-mujoco_warns = MuJoCo warnt: { $reason }
 robot_file-same_name = { $name } heißt schon ein anderer Roboter
 robot_file-absent_robot = diese Einstellung ist für den Roboter { $name } aus einer Datei: Starten Sie das Labor mit --robot und dieser Datei
+robot_file-guessed_tip = die Datei sagt nicht, welches Glied die Spitze ist: genommen wird { $tip }
+robot_file-guessed_free = schwebende, ebene und Kugelgelenke bleiben, wo sie sind: { $joints }{ $more ->
+        [0] {""}
+       *[other] {" "}und { $more } weitere
+    }
+robot_file-guessed_mimic = Gelenke, die einem anderen folgen, bleiben, wo sie sind: { $joints }{ $more ->
+        [0] {""}
+       *[other] {" "}und { $more } weitere
+    }
+robot_file-guessed_many = höchstens { $most } Gelenke können sich auf dem Weg zur Spitze bewegen; diese bleiben, wo sie sind: { $joints }{ $more ->
+        [0] {""}
+       *[other] {" "}und { $more } weitere
+    }
+robot_file-guessed_off = Gelenke abseits des Wegs zur Spitze bleiben, wo sie sind: { $joints }{ $more ->
+        [0] {""}
+       *[other] {" "}und { $more } weitere
+    }
+robot_file-guessed_limits = Gelenke, für die die Datei keine Grenzen nennt oder beide mit 0, gelten als unbegrenzt: { $joints }{ $more ->
+        [0] {""}
+       *[other] {" "}und { $more } weitere
+    }
 robot_file-still = das Gelenk { $joint } hat zwischen seinen Grenzen keinen Weg und bleibt stehen
 robot_file-triangle = die Trägheit des Glieds { $link } ist ungewöhnlich: Das größte Hauptträgheitsmoment übersteigt die Summe der anderen
 robot_file-mesh_left_out = das Netz { $mesh } wird weggelassen: Es ist keine .stl-, .obj- oder .dae-Datei bis 20 MB im Ordner oder Paket des Roboters (--package NAME=ORDNER; in Python packages=…)

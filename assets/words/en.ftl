@@ -1331,10 +1331,7 @@ robot_file-loop = the links form a loop: only trees of links can be simulated
 robot_file-apart = no joint leads here from { $name }: all links of a robot must be connected
 robot_file-twice = the name is already used in line { $line }
 robot_file-many = more than { $most } of them
-robot_file-joints = more than { $most } joints move on the way to the tip: { $names }. Hold some of them with --lock joint=value (in Python, lock=…)
 robot_file-type = unknown type { $type }
-robot_file-free = a { $type } joint on the way to the tip cannot be simulated: make it fixed in the file
-robot_file-mimic = a joint that follows another on the way to the tip: lock it
 robot_file-outside = { $value } is outside the limits from { $low } to { $high }
 robot_file-mass = the mass { $value } is negative
 robot_file-inertia = no body has this inertia: a moment of inertia about some axis is negative
@@ -1344,7 +1341,6 @@ robot_file-axis = an axis needs a direction
 robot_file-shape = a shape needs positive sizes below 100 m
 robot_file-still_tip = the tip does not move: no joint on the way to it does
 robot_file-no_tip = there is no link { $tip }: there are { $names }
-robot_file-which_tip = which link is the tip? Name one with --tip (in Python, tip=…): { $names }
 robot_file-no_joint = there is no joint { $joint }: there are { $names }
 robot_file-pose = { $joint }: { $value } is not a position
 robot_file-pose_outside = { $joint }: { $value } is not between its limits { $low } and { $high }
@@ -1365,6 +1361,27 @@ robot_file-mujoco_ended = MuJoCo has ended while it read { $file }: it crashed, 
 robot_file-mujoco_warns = MuJoCo warns: { $reason }
 robot_file-same_name = { $name } is the name of another robot
 robot_file-absent_robot = this set-up is for the robot { $name }, which comes from a file: start the lab with --robot and that file
+robot_file-guessed_tip = the file does not say which link is the tip: { $tip } is taken
+robot_file-guessed_free = floating, planar and ball joints stay where they are: { $joints }{ $more ->
+        [0] {""}
+       *[other] {" "}and { $more } more
+    }
+robot_file-guessed_mimic = joints that follow another one stay where they are: { $joints }{ $more ->
+        [0] {""}
+       *[other] {" "}and { $more } more
+    }
+robot_file-guessed_many = at most { $most } joints can move on the way to the tip; these stay where they are: { $joints }{ $more ->
+        [0] {""}
+       *[other] {" "}and { $more } more
+    }
+robot_file-guessed_off = joints off the way to the tip stay where they are: { $joints }{ $more ->
+        [0] {""}
+       *[other] {" "}and { $more } more
+    }
+robot_file-guessed_limits = joints for which the file states no limits, or both as 0, are taken to have none: { $joints }{ $more ->
+        [0] {""}
+       *[other] {" "}and { $more } more
+    }
 robot_file-still = the joint { $joint } has no travel between its limits, and stays still
 robot_file-triangle = the inertia of the link { $link } is unusual: the largest principal moment exceeds the sum of the others
 robot_file-mesh_left_out = the mesh { $mesh } is left out: it is not a .stl, .obj or .dae file of up to 20 MB in the robot's folder or package (--package NAME=FOLDER; in Python, packages=…)

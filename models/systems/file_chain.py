@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -11,9 +12,12 @@ import numpy as np
 
 from onpath.models.arrays import Array
 from onpath.models.errors import Message
+from onpath.models.systems.guesses import Guess
 from onpath.models.systems.rigid_chain import Body, Chain, Joint, Shape
+from onpath.models.systems.xml_elements import shown
 
 MOST_JOINTS = 8  # that move on the way to the tip
+MOST_NAMES = 8  # of joints in a message
 EXACT = 1e-10  # entries of rotations this near to 0 and ±1 are set to them: files round angles
 
 
@@ -22,12 +26,14 @@ class Options:
     """How to read a robot's file.
 
     Attributes:
-        tip: link whose origin is the end-point; empty: the only link without a further one.
+        tip: link whose origin is the end-point; empty: it is guessed if there are several.
         lock: joints on the way to the tip that do not move, and where they stand, [rad] or [m].
         pose: where joints stand at home; those not on the way to the tip stay there, [rad] or [m].
         armature: inertia of the motors' rotors, which a file may leave out, as seen at the joints,
             [kg m²].
         packages: folders of packages, for the addresses of meshes.
+        density: of the shapes whose mass is guessed, [kg/m³]; None: `file_masses.DENSITY`.
+        mass: of all that moves, to which guessed masses are scaled, [kg]; None: not known.
     """
 
     tip: str = ""
@@ -35,6 +41,8 @@ class Options:
     pose: Mapping[str, float] = field(default_factory=dict[str, float])
     armature: float = 0.0
     packages: Mapping[str, Path] = field(default_factory=dict[str, Path])
+    density: float | None = None
+    mass: float | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -45,11 +53,15 @@ class FileChain:
         chain: the moving bodies, from the base to the tip.
         home: where joints stand at home, if the file says so, [rad] or [m].
         remarks: what has been left out or is unusual.
+        guesses: what the file does not say.
+        tips: links that may be the tip, best first, at most five; the chosen one is the first.
     """
 
     chain: Chain
     home: Mapping[str, float]
     remarks: tuple[Message, ...]
+    guesses: tuple[Guess, ...]
+    tips: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -103,9 +115,26 @@ class Group:
         )
 
 
-def many_joints(names: Sequence[str]) -> Message:
-    """The reason why a file is refused in which these joints move on the way to the tip."""
-    return Message("robot_file.joints", {"most": MOST_JOINTS, "names": ", ".join(names)})
+def locked_guess(code: str, joints: Sequence[str], values: Mapping[str, float]) -> Guess:
+    """The guess that joints stay where they are.
+
+    Args:
+        code: of its message, which names the joints.
+        values: where they stay, [rad] or [m]; 0 if it is not said.
+    """
+    named = ", ".join(shown(name) for name in joints[:MOST_NAMES])
+    more = len(joints) - MOST_NAMES
+    line = " ".join(
+        f"--lock {shlex.quote(f'{name}={values.get(name, 0.0):.6g}')}" for name in joints
+    )
+    message = Message(code, {"joints": named, "more": max(0, more), "most": MOST_JOINTS})
+    return Guess("lock", message, line if more <= 0 else "")
+
+
+def tip_guess(tip: str) -> Guess:
+    """The guess that a link is the tip."""
+    message = Message("robot_file.guessed_tip", {"tip": shown(tip)})
+    return Guess("tip", message, f"--tip {shlex.quote(tip)}")
 
 
 def turn(axis: Array, angle: float) -> Array:

@@ -23,12 +23,15 @@ from onpath.models.systems.file_chain import (
     RigidTransform,
     aligned,
     exact,
-    many_joints,
+    locked_guess,
+    tip_guess,
     turn,
 )
+from onpath.models.systems.guesses import Guess
 from onpath.models.systems.mjcf_check import all_elements, checked_model
 from onpath.models.systems.mujoco_process import read_model
 from onpath.models.systems.rigid_chain import Chain, Joint, Shape
+from onpath.models.systems.tip_guess import MOST_TIPS, TipPlace, limb_joints, suggested_tips
 from onpath.models.systems.xml_elements import Element, FileFault, shown
 
 FREE, BALL, SLIDE = 0, 1, 2  # types of joints in MuJoCo; 3 turns
@@ -67,6 +70,7 @@ class _Model:
     def __init__(self, model: Any, root: Element, options: Options) -> None:
         self._model, self._root, self._options = model, root, options
         self._way = set[int]()  # bodies from the world to the tip
+        self._held = dict[str, str]()  # joints on the way that are locked without being asked
         self._joints = {name or f"joint{i}": i for i, name in enumerate(model.joint_names)}
         for name in (*options.lock, *options.pose):
             if name not in self._joints:
@@ -76,11 +80,13 @@ class _Model:
     def read(self) -> FileChain:
         """The chain, its home and remarks."""
         model = self._model
-        tip, place = self._tip()
+        tips = self._suggested()
+        tip, place = self._tip(tips[0])
         body = tip
         while body:
             self._way.add(body)
             body = int(model.body_parentid[body])
+        self._held = self._held_joints(tips[0])
         groups, frames = [Group("world")], [(0, RigidTransform())]
         for body in range(1, len(model.body_names)):
             number, before = frames[int(model.body_parentid[body])]
@@ -103,7 +109,13 @@ class _Model:
             facing=here.rotation[:, 2],
             base=tuple(groups[0].shapes),
         )
-        return FileChain(chain=chain, home=self._home(), remarks=tuple(self._remarks()))
+        return FileChain(
+            chain=chain,
+            home=self._home(),
+            remarks=tuple(self._remarks()),
+            guesses=tuple(self._guesses(tips[0])),
+            tips=tips,
+        )
 
     def _joined(
         self, body: int, on_way: bool, number: int, here: RigidTransform, groups: list[Group]
@@ -115,24 +127,17 @@ class _Model:
             name = model.joint_names[i] or f"joint{i}"
             kind = int(model.jnt_type[i])
             if kind in (FREE, BALL):
-                if on_way:
-                    reason = Message(
-                        "robot_file.free", {"type": "free" if kind == FREE else "ball"}
-                    )
-                    raise FileFault(self._element(name), reason)
                 continue
             anchor = RigidTransform(translation=np.array(model.jnt_pos[i]))
             back = RigidTransform(translation=-anchor.translation)
             axis = np.array(model.jnt_axis[i])
-            if not on_way or name in self._options.lock:
+            if not on_way or name in self._options.lock or name in self._held:
                 here = here @ anchor @ _moved(kind, axis, self._locked(i, name)) @ back
                 continue
             frame = RigidTransform(aligned(axis))
             groups.append(
                 Group(model.body_names[body], self._joint(i, name), here @ anchor @ frame)
             )
-            if len(groups) - 1 > MOST_JOINTS:
-                raise FileFault(self._element(name), many_joints(self._moving_names()))
             number, here = len(groups) - 1, RigidTransform(frame.rotation.T) @ back
         return number, here
 
@@ -140,11 +145,6 @@ class _Model:
         """The element of a joint; that of the whole file if it has no name."""
         named = (each for each in all_elements(self._root) if each.tag in ("joint", "freejoint"))
         return next((each for each in named if each.values.get("name") == joint), self._root)
-
-    def _moving_names(self) -> list[str]:
-        """The joints on the way to the tip that are not locked."""
-        on_way = {n: int(self._model.jnt_bodyid[i]) in self._way for n, i in self._joints.items()}
-        return [name for name, on in on_way.items() if on and name not in self._options.lock]
 
     def _joint(self, i: int, name: str) -> Joint:
         model = self._model
@@ -238,19 +238,77 @@ class _Model:
         at = {name: int(model.jnt_qposadr[i]) for name, i in turning.items()}
         return {name: float(values[k] - model.qpos0[k]) for name, k in at.items()}
 
-    def _tip(self) -> tuple[int, RigidTransform]:
+    def _suggested(self) -> tuple[str, ...]:
+        """The bodies and sites that may be the tip; the first one is it."""
+        places, tip = self._places(), self._options.tip
+        names = [places[i].name for i in suggested_tips(places) if places[i].name]
+        if not tip and not names:
+            raise FileFault(self._root, Message("robot_file.still_tip"))
+        found = [tip, *(name for name in names if name != tip)] if tip else names
+        return tuple(found[:MOST_TIPS])
+
+    def _places(self) -> list[TipPlace]:
+        """The bodies, parents before children, and then the sites."""
+        model, places = self._model, [TipPlace("world", -1)]
+        for body in range(1, len(model.body_names)):
+            first, count = int(model.body_jntadr[body]), int(model.body_jntnum[body])
+            joints = range(first, first + count)
+            names = [model.joint_names[i] or f"joint{i}" for i in joints if self._moves(i)]
+            step = float(np.linalg.norm(model.body_pos[body]))
+            parent = int(model.body_parentid[body])
+            place = TipPlace(model.body_names[body], parent, tuple(names), step=step)
+            places.append(place)
+        for name, body, position in zip(
+            model.site_names, model.site_bodyid, model.site_pos, strict=True
+        ):
+            places.append(TipPlace(name, int(body), step=float(np.linalg.norm(position))))
+        return places
+
+    def _moves(self, i: int) -> bool:
+        return int(self._model.jnt_type[i]) not in (FREE, BALL)
+
+    def _held_joints(self, tip: str) -> dict[str, str]:
+        """The joints on the way to the tip that are locked without being asked, and why."""
+        held, moving = dict[str, str](), list[str]()
+        for name, i in self._joints.items():
+            if int(self._model.jnt_bodyid[i]) not in self._way or name in self._options.lock:
+                continue
+            if not self._moves(i):
+                held[name] = "robot_file.guessed_free"
+            else:
+                moving.append(name)
+        if len(moving) > MOST_JOINTS:
+            places = self._places()
+            at = next(i for i, place in enumerate(places) if i and place.name == tip)
+            kept = limb_joints(places, at, MOST_JOINTS)
+            many = [name for name in moving if name not in kept]
+            held |= dict.fromkeys(many, "robot_file.guessed_many")
+        return held
+
+    def _guesses(self, tip: str) -> Iterator[Guess]:
+        """What the file does not say."""
+        options = self._options
+        parents = {int(parent) for parent in self._model.body_parentid[1:]}
+        bodies = [name for i, name in enumerate(self._model.body_names) if i and i not in parents]
+        if not options.tip and len([name for name in self._model.site_names if name] or bodies) > 1:
+            yield tip_guess(tip)
+        for code in dict.fromkeys(self._held.values()):
+            names = [name for name, why in self._held.items() if why == code]
+            yield locked_guess(code, names, options.pose)
+        off = [
+            name
+            for name, i in self._joints.items()
+            if int(self._model.jnt_bodyid[i]) not in self._way
+            and name not in {*options.lock, *options.pose}
+        ]
+        if off:
+            yield locked_guess("robot_file.guessed_off", off, {})
+
+    def _tip(self, wanted: str) -> tuple[int, RigidTransform]:
         """The body of the tip, and the tip in it."""
-        model, wanted = self._model, self._options.tip
+        model = self._model
         sites = {name: i for i, name in enumerate(model.site_names) if name}
         bodies = {name: i for i, name in enumerate(model.body_names) if i and name}
-        if not wanted:
-            parents = set(model.body_parentid[1:].tolist())
-            leaves = [name for name, i in bodies.items() if i not in parents]
-            choice = list(sites) if len(sites) == 1 else leaves
-            if len(choice) != 1:
-                names = ", ".join([*sites, *leaves])
-                raise CodedError("robot_file.which_tip", names=names)
-            wanted = choice[0]
         if wanted in sites:
             i = sites[wanted]
             return int(model.site_bodyid[i]), _place(model.site_pos[i], model.site_quat[i])

@@ -29,6 +29,7 @@ import numpy as np
 
 from onpath.models.arrays import Array
 from onpath.models.systems.drawing import Point
+from onpath.models.systems.guesses import Guess
 from onpath.models.systems.system import GRAVITY
 
 
@@ -147,6 +148,7 @@ class ChainSource:
         home: its configuration at home, n numbers, [rad] or [m].
         axes: directions of its outputs in the frame of the base, p of them.
         substeps: see `Robot.substeps`.
+        guesses: what its file does not say.
     """
 
     name: str
@@ -156,6 +158,7 @@ class ChainSource:
     home: tuple[float, ...]
     axes: tuple[Point, ...]
     substeps: int = 1
+    guesses: tuple[Guess, ...] = ()
 
     @property
     def redundant(self) -> bool:
@@ -171,7 +174,7 @@ class ChainSource:
         return self.mechanics() == other.mechanics()
 
     def mechanics(self) -> list[Any]:
-        """All of the data but names and looks."""
+        """All of the data but names, looks and guesses."""
         chain = msgspec.to_builtins(self.chain, enc_hook=_listed)
         bodies = [{**body, "shapes": ()} for body in chain["bodies"]]
         return [bodies, chain["tip"], chain["facing"], self.home, self.axes, self.substeps]

@@ -25,7 +25,8 @@ from onpath.models.systems.chain_robot import (
 )
 from onpath.models.systems.drawing import Point
 from onpath.models.systems.efforts import stated
-from onpath.models.systems.file_chain import Options
+from onpath.models.systems.file_chain import FileChain, Options
+from onpath.models.systems.guesses import Guess
 from onpath.models.systems.home_pose import chosen_pose, reachable_circle
 from onpath.models.systems.mjcf_file import read_mjcf
 from onpath.models.systems.rigid_chain import Chain, ChainSource, chain_frames, tip_of
@@ -49,11 +50,15 @@ class RobotFile:
             set-up with it is not taken for another robot's.
         circle: the largest radius of circles about home that it can follow, [m].
         remarks: what has been left out or is unusual.
+        guesses: what the file does not say.
+        tips: see `FileChain.tips`.
     """
 
     entry: RobotEntry
     circle: float
     remarks: tuple[Message, ...]
+    guesses: tuple[Guess, ...]
+    tips: tuple[str, ...]
 
 
 def read_robot(file: Path, options: Options) -> RobotFile:
@@ -75,8 +80,11 @@ def read_robot(file: Path, options: Options) -> RobotFile:
         raise fault.in_file(file) from None
     stem = _STRANGE.sub("_", file.stem.lower()).strip("_")[:24] or "robot"
     said = (sorted(options.lock.items()), sorted(options.pose.items()), options.armature)
-    digest = hashlib.sha256(data + repr((options.tip, *said)).encode()).hexdigest()[:8]
-    return _made(file, f"{stem}_{digest}", read.chain, {**read.home, **options.pose}, read.remarks)
+    tip = read.tips[0] if any(guess.kind == "tip" for guess in read.guesses) else options.tip
+    weighed = [(key, value) for key in ("density", "mass") if (value := getattr(options, key))]
+    key = repr((tip, *said, *weighed)).encode()
+    digest = hashlib.sha256(data + key).hexdigest()[:8]
+    return _made(file, f"{stem}_{digest}", read, {**read.home, **options.pose})
 
 
 def packaged_robot(name: str, label: str, text: str, pose: Mapping[str, float]) -> RobotEntry:
@@ -112,10 +120,8 @@ def _check(options: Options) -> None:
         raise CodedError("robot_file.armature", value=f"{options.armature:g}", most=most)
 
 
-def _made(
-    file: Path, name: str, chain: Chain, pose: Mapping[str, float], remarks: tuple[Message, ...]
-) -> RobotFile:
-    axes = output_axes(chain)
+def _made(file: Path, name: str, read: FileChain, pose: Mapping[str, float]) -> RobotFile:
+    chain, axes = read.chain, output_axes(read.chain)
     if chain.n < len(axes):
         raise CodedError("robot_file.few_joints", count=chain.n, needed=len(axes))
     home = _home(chain, axes, pose)
@@ -126,6 +132,7 @@ def _made(
         chain=chain,
         home=tuple(home.tolist()),
         axes=axes,
+        guesses=read.guesses,
     )
     source = replace(source, substeps=_substeps(source))
     circle = reachable_circle(chain_robot(source))
@@ -135,7 +142,13 @@ def _made(
     reach = f"Its tip follows circles of up to {1e3 * circle:.0f} mm about home."
     text = " ".join([source.text, reach, *_limits_of(chain)])
     entry = chain_entry(replace(source, text=text))
-    return RobotFile(entry=entry, circle=circle, remarks=remarks)
+    return RobotFile(
+        entry=entry,
+        circle=circle,
+        remarks=read.remarks,
+        guesses=read.guesses,
+        tips=read.tips,
+    )
 
 
 def _home(chain: Chain, axes: tuple[Point, ...], pose: Mapping[str, float]) -> Array:

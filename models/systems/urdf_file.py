@@ -1,13 +1,14 @@
 """Reads a robot from a URDF file as a chain of bodies, and refuses what it cannot take.
 
 The chain leads from the root of the tree of links to the tip. Its joints move, unless they are
-fixed or locked; all other joints are locked, and links that do not move against each other are one
-body. Source: http://wiki.ros.org/urdf/XML.
+fixed or locked, at most `MOST_JOINTS` of them; all other joints are locked, and links that do not
+move against each other are one body. Source: http://wiki.ros.org/urdf/XML.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -22,11 +23,14 @@ from onpath.models.systems.file_chain import (
     RigidTransform,
     aligned,
     exact,
-    many_joints,
+    locked_guess,
+    tip_guess,
     turn,
 )
+from onpath.models.systems.guesses import Guess
 from onpath.models.systems.mesh_folders import MeshFolders
 from onpath.models.systems.rigid_chain import Chain, Joint, Shape
+from onpath.models.systems.tip_guess import MOST_TIPS, TipPlace, limb_joints, suggested_tips
 from onpath.models.systems.xml_elements import Element, FileFault, shown
 
 MOST_LINKS = 64
@@ -46,7 +50,13 @@ def read_urdf(file: Path, root: Element, options: Options) -> FileChain:
         CodedError: an option names a link or joint that does not exist.
     """
     tree = _Tree(file, root, options)
-    return FileChain(chain=tree.chain(), home={}, remarks=tuple(tree.remarks))
+    return FileChain(
+        chain=tree.chain(),
+        home={},
+        remarks=tuple(tree.remarks),
+        guesses=tuple(tree.guesses()),
+        tips=tree.tips,
+    )
 
 
 class _Tree:
@@ -67,9 +77,12 @@ class _Tree:
         for joint in self._joints.values():
             self._after.setdefault(joint.need("parent").name("link"), []).append(joint)
         self._base = self._checked_base()
-        self._tip = self._tip_link()
-        self._way = self._joints_to(self._tip)
         self._check_names()
+        self._places = self._tree()
+        self.tips = self._suggested()
+        self._tip = self.tips[0]
+        self._way = self._joints_to(self._tip)
+        self._held = self._held_joints()
 
     def _parents(self) -> dict[str, Element]:
         """The joint before each link."""
@@ -107,27 +120,90 @@ class _Tree:
                 raise FileFault(link, Message("robot_file.loop"))
         return roots[0]
 
-    def _tip_link(self) -> str:
-        """The link that is the tip: the one that the user names, or the only one at an end."""
+    def _suggested(self) -> tuple[str, ...]:
+        """The links that may be the tip; the first one is it."""
         tip = self._options.tip
-        if tip:
-            if tip not in self._links:
-                names = ", ".join(self._links)
-                raise CodedError("robot_file.no_tip", tip=shown(tip), names=names)
-            return tip
-        leaves = [name for name in self._links if name not in self._after]
-        if len(leaves) > 1:
-            raise CodedError("robot_file.which_tip", names=", ".join(leaves))
-        return leaves[0]
+        if tip and tip not in self._links:
+            names = ", ".join(self._links)
+            raise CodedError("robot_file.no_tip", tip=shown(tip), names=names)
+        names = [self._places[i].name for i in suggested_tips(self._places)]
+        if not tip and not names:
+            raise FileFault(self._root, Message("robot_file.still_tip"))
+        found = [tip, *(name for name in names if name != tip)] if tip else names
+        return tuple(found[:MOST_TIPS])
 
-    def _joints_to(self, tip: str) -> set[str]:
-        """The joints from the base to the tip."""
-        way, link = set[str](), tip
+    def _tree(self) -> list[TipPlace]:
+        """The links, parents before children."""
+        places, waiting = [TipPlace(self._base, -1)], [(self._base, 0)]
+        while waiting:
+            link, number = waiting.pop()
+            for joint in reversed(self._after.get(link, [])):
+                child = joint.need("child").name("link")
+                moves = joint.text("type") in (*TURNING, *SLIDING) and not _is_still(joint)
+                place = TipPlace(
+                    name=child,
+                    parent=number,
+                    joints=(joint.name(),) if moves else (),
+                    follows=joint.first("mimic") is not None,
+                    step=float(np.linalg.norm(_origin(joint).translation)),
+                )
+                waiting.append((child, len(places)))
+                places.append(place)
+        return places
+
+    def _joints_to(self, tip: str) -> dict[str, Element]:
+        """The joints from the base to the tip, by name."""
+        way, link = list[Element](), tip
         while link in self._before:
-            joint = self._before[link]
-            way.add(joint.name())
-            link = joint.need("parent").name("link")
-        return way
+            way.append(self._before[link])
+            link = way[-1].need("parent").name("link")
+        return {joint.name(): joint for joint in reversed(way)}
+
+    def _held_joints(self) -> dict[str, str]:
+        """The joints on the way to the tip that are locked without being asked, and why."""
+        held, moving = dict[str, str](), list[str]()
+        for name, joint in self._way.items():
+            kind = joint.text("type")
+            if kind in STILL or name in self._options.lock:
+                continue
+            if kind in FREE:
+                held[name] = "robot_file.guessed_free"
+            elif joint.first("mimic") is not None:
+                held[name] = "robot_file.guessed_mimic"
+            elif not _is_still(joint):
+                moving.append(name)
+        if len(moving) > MOST_JOINTS:
+            tip = next(i for i, place in enumerate(self._places) if place.name == self._tip)
+            kept = limb_joints(self._places, tip, MOST_JOINTS)
+            many = [name for name in moving if name not in kept]
+            held |= dict.fromkeys(many, "robot_file.guessed_many")
+        return held
+
+    def guesses(self) -> Iterator[Guess]:
+        """What the file does not say."""
+        options = self._options
+        if not options.tip and [n for n in self._links if n not in self._after] != [self._tip]:
+            yield tip_guess(self._tip)
+        for code in dict.fromkeys(self._held.values()):
+            names = [name for name, why in self._held.items() if why == code]
+            yield locked_guess(code, names, options.pose)
+        off = [
+            name
+            for name, joint in self._joints.items()
+            if name not in {*self._way, *options.lock, *options.pose}
+            and joint.text("type") not in STILL
+        ]
+        if off:
+            yield locked_guess("robot_file.guessed_off", off, {})
+        free = [
+            name
+            for name, joint in self._way.items()
+            if joint.text("type") in ("revolute", *SLIDING)
+            and name not in {*self._held, *options.lock}
+            and _without_limits(joint.first("limit"))
+        ]
+        if free:
+            yield locked_guess("robot_file.guessed_limits", free, {})
 
     def _check_names(self) -> None:
         for name in (*self._options.lock, *self._options.pose):
@@ -156,8 +232,6 @@ class _Tree:
                     continue
                 frame = RigidTransform(aligned(_axis(joint)))
                 groups.append(Group(child, moving, origin @ frame))
-                if len(groups) - 1 > MOST_JOINTS:
-                    raise FileFault(joint, many_joints(self._moving_names()))
                 waiting.append((child, len(groups) - 1, RigidTransform(frame.rotation.T)))
         return Chain(
             bodies=tuple(group.body() for group in groups[1:]),
@@ -165,12 +239,6 @@ class _Tree:
             facing=tip.rotation[:, 2],
             base=tuple(groups[0].shapes),
         )
-
-    def _moving_names(self) -> list[str]:
-        """The joints on the way to the tip that are not fixed or locked, as in the file."""
-        way = [joint for name, joint in self._joints.items() if name in self._way]
-        moving = [joint.name() for joint in way if joint.text("type") not in STILL]
-        return [name for name in moving if name not in self._options.lock]
 
     def _moving(self, joint: Element) -> Joint | None:
         """The joint if it is on the way to the tip and moves; None if it is locked."""
@@ -180,12 +248,8 @@ class _Tree:
         data = _joint(joint, kind, self._options.armature)
         if name not in self._way or kind in STILL:
             return None
-        if kind in FREE:
-            raise FileFault(joint, Message("robot_file.free", {"type": kind}))
-        if name in self._options.lock:
+        if name in self._options.lock or name in self._held:
             return None
-        if joint.first("mimic") is not None:
-            raise FileFault(joint, Message("robot_file.mimic"))
         if data.low == data.high:
             self.remarks.append(Message("robot_file.still", {"joint": name}))
             return None
@@ -307,6 +371,19 @@ def _check_last(link: Element, number: int, groups: list[Group]) -> None:
         raise FileFault(link, Message("robot_file.still_tip"))
 
 
+def _is_still(joint: Element) -> bool:
+    """Whether a joint that could move has no travel between its limits."""
+    data = _joint(joint, joint.text("type"), 0.0)
+    return data.low == data.high
+
+
+def _without_limits(limit: Element | None) -> bool:
+    """Whether the ends of a joint that could have some are left out, or those of an exporter."""
+    if limit is None or not {"lower", "upper"} & limit.values.keys():
+        return True
+    return not any(limit.number(key, 0.0) for key in ("lower", "upper", "effort", "velocity"))
+
+
 def _joint(joint: Element, kind: str, armature: float) -> Joint:
     """Limits and friction of a joint."""
     limit, dynamics = joint.first("limit"), joint.first("dynamics")
@@ -315,9 +392,7 @@ def _joint(joint: Element, kind: str, armature: float) -> Joint:
         effort = limit.number("effort", 0.0) or math.inf
         if effort < 0:
             raise FileFault(limit, Message("robot_file.negative", {"field": "effort"}))
-    if kind in ("revolute", *SLIDING):
-        if limit is None:
-            raise FileFault(joint, Message("robot_file.without", {"what": "<limit>"}))
+    if kind in ("revolute", *SLIDING) and limit is not None and not _without_limits(limit):
         low, high = limit.number("lower", 0.0), limit.number("upper", 0.0)
         if low > high:
             raise FileFault(
