@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 import viser
 
+from onpath.models.systems.catalogue import ROBOTS
 from tests.support.checkout import ROOT
 from tests.support.private_names import foreign_private_names, is_private, own_names
 
@@ -167,6 +168,35 @@ def test_no_class_name_is_used_twice() -> None:
         if isinstance(node, ast.ClassDef)
     )
     assert [name for name, count in named.items() if count > 1] == []
+
+
+def branches(tree: ast.AST) -> Iterator[ast.expr]:
+    """What decides which way a module goes, and which values a list has."""
+    for node in ast.walk(tree):
+        if isinstance(node, (ast.If, ast.IfExp)):
+            yield node.test
+        elif isinstance(node, ast.comprehension):
+            yield from node.ifs
+
+
+def robots_by_name(tree: ast.AST) -> list[str]:
+    """Branches that know a robot of the catalogue by its name."""
+    return [
+        ast.unparse(each)
+        for condition in branches(tree)
+        for each in ast.walk(condition)
+        if isinstance(each, ast.Compare)
+        and any(isinstance(part, ast.Constant) and part.value in ROBOTS for part in ast.walk(each))
+    ]
+
+
+def test_no_test_makes_an_exception_for_a_robot_by_its_name() -> None:
+    """A law for every robot asks what kind it is: a new one may be of that kind, too."""
+    files = sorted((ROOT / "tests").rglob("*.py"))
+    found = {file.name: robots_by_name(parse(file)) for file in files}
+    assert {name: found for name, found in found.items() if found} == {}
+    assert robots_by_name(ast.parse("x = 1 if robot.name != 'five_bar' else 2"))
+    assert robots_by_name(ast.parse("y = [n for n in ROBOTS if n not in ('flexible', 'other')]"))
 
 
 def test_the_simulated_lab_knows_nothing_of_its_user() -> None:

@@ -2,7 +2,7 @@
 
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.contract import faults_of
-print(*faults_of(ROBOTS["my_robot"]), sep="\\n")
+print(*faults_of(ROBOTS["my_robot"]) or ["no faults"], sep="\\n")
 """
 
 from __future__ import annotations

@@ -348,7 +348,7 @@ def test_the_path_has_the_points_that_the_laws_aim_at(name: str) -> None:
         closest = [np.interp(place, range(len(points)), column) for column in points.T]
         truth = simulation.robot.frame.lift(simulation.editor.curve.at(run.shown()["theta"][0]))
         assert np.abs(closest - truth).max() < 3e-5
-    if name == "flexible":
+    if simulation.entry.flexible_link:
         rigid = np.array(reader.straight[-1]).reshape(2, -1) / LENGTH
         ends = np.array([robot["y"] for robot in reader.robots(reader.rows[-1])])
         bent = [run.shown()["y"] for run in simulation.runs.values()]

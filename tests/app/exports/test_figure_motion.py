@@ -17,7 +17,7 @@ from onpath.app.exports.standalone.figure_choice import FigureChoice, chosen
 from onpath.app.exports.standalone.figure_page import figure_page
 from onpath.lessons.words import ENGLISH
 from onpath.models.paths.path_design import presets
-from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
 from tests.support.figure_runs import Act, PythonFigure
 from tests.support.node_page import NodePage, needs_node
 from tests.support.robot_files import HEAVY, urdf
@@ -157,7 +157,7 @@ def test_it_is_the_run_of_simulate(opened: Opened) -> None:
         np.testing.assert_allclose(row[: len(end)], end, rtol=0, atol=CLOSE)
 
 
-@pytest.mark.parametrize("robot", [name for name in ROBOTS if name != "five_bar"])
+@pytest.mark.parametrize("robot", [name for name in ROBOTS if name != FIVE_BAR.name])
 def test_every_robot_follows_also_a_path_whose_points_are_dragged(
     tmp_path: Path, robot: str
 ) -> None:

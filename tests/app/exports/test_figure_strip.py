@@ -12,6 +12,7 @@ import pytest
 
 import onpath
 from onpath.lessons.words import ENGLISH
+from onpath.models.systems.catalogue import ROBOTS
 from tests.support.node_page import NodePage, needs_node
 from tests.support.waiting import wait_for
 
@@ -199,12 +200,13 @@ def test_a_lens_on_every_robot(tmp_path: Path, robot: str) -> None:
     page.evaluate("onpath.simulation.pull([0.02, 0.01])")
     page.evaluate("onpath.advance(400)")
     sides = page.evaluate("onpath.engine.present.sides")
+    bends = ROBOTS[robot].flexible_link is not None
     for side in sides:
         tip, closest = np.array(side["tip"]), np.array(side["closest"])
         assert np.linalg.norm(tip - closest) == pytest.approx(side["distance"], abs=1e-9)
         assert side["distance"] > 1e-5 and side["pulled"]
-        assert (side["straight"] is not None) == (robot == "flexible")
-    if robot == "flexible":
+        assert (side["straight"] is not None) == bends
+    if bends:
         bent = page.evaluate("onpath.simulation.sides.map(side => side.measured()[0])")
         for side, deflection in zip(sides, bent, strict=True):
             gap = np.linalg.norm(np.subtract(side["tip"], side["straight"]))

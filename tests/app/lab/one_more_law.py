@@ -42,7 +42,7 @@ LAW = "sliding_mode"
 def test_both_loops_have_the_same_bits(name: str) -> None:
     entry = ROBOTS[name]
     parameters = with_values(entry.parameters(), {"reach": 3.0})
-    if name == "flexible":
+    if entry.flexible_link:
         parameters = replace(parameters, output="redefined")  # type: ignore[call-arg]
     robot, curve = entry.make(parameters), circle(0.05)
     kernel = kernel_of(robot, kind_of(LAW, parameters, curve))

@@ -36,8 +36,10 @@ from onpath.models.systems.robots import RobotEntry
 from tests.support.lab import FOLLOWER, TRACKER, assert_drawable, assert_sound, do, loop_cache, y
 from tests.support.lab import run as run_lab
 from tests.support.new_robot import GANTRY, new_robot
+from tests.support.overhead_crane import ROBOT as CRANE
 
-NAMES_OF_ALL = [*ROBOTS, "gantry"]
+NEW = pytest.param(CRANE.name, marks=pytest.mark.thorough)  # five coordinates, three motors
+NAMES_OF_ALL = [*ROBOTS, "gantry", NEW]
 
 
 @pytest.fixture
@@ -48,7 +50,10 @@ def gantry(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 
 @pytest.fixture(params=NAMES_OF_ALL)
-def entry(request: pytest.FixtureRequest, gantry: None) -> RobotEntry:
+def entry(
+    request: pytest.FixtureRequest, gantry: None, monkeypatch: pytest.MonkeyPatch
+) -> RobotEntry:
+    monkeypatch.setitem(ROBOTS, CRANE.name, CRANE)
     return ROBOTS[request.param]
 
 
@@ -61,11 +66,8 @@ def lab_with(entry: RobotEntry, seconds: float = 0.0) -> Lab:
 
 
 def off_path(simulation: Simulation, side: str) -> float:
-    """How far a robot is off its path, [m]: the output of a gantry, the end-point of the others."""
-    run = simulation.runs[side]
-    if simulation.entry.name == "rod_gantry":
-        return float(np.abs(run.shown()["xi"]).max())
-    return run.distance
+    """How far the controlled output is off the path, [m]."""
+    return float(np.abs(simulation.runs[side].shown()["xi"]).max())
 
 
 def test_the_catalogue_finds_it_by_its_name(entry: RobotEntry) -> None:

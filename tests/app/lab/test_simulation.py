@@ -248,7 +248,7 @@ def test_no_sequence_of_commands_breaks_a_lesson(
     lab = Lab(loop_cache(), FIVE_BAR, course)
     do(lab, c.ChooseRobot(robot))
     assert lab.simulation.entry.name == robot
-    if robot == "five_bar":
+    if robot == FIVE_BAR.name:
         do(lab, c.OpenLesson("01-a"))
     for command, frames in steps:
         do(lab, command)

@@ -24,6 +24,7 @@ from onpath.app.server.new_lab import new_lab
 from onpath.models.control.laws.law import ControlAction, View, own_gain
 from onpath.models.control.laws.path_following import followed, tangential
 from onpath.models.control.laws.python_law import Now
+from onpath.models.systems.catalogue import ROBOTS
 from tests.support.checkout import ROOT
 
 EXAMPLE = f"{ROOT / 'assets' / 'examples' / 'own_law.py'}:SlidingMode"
@@ -69,9 +70,10 @@ def test_a_function_moves_the_robot_as_the_same_formula_does(robot: str, rate: i
         along, _ = by_function(now)
         return along, *(-now.K1 * now.xi - now.K2 * now.xi_rate)
 
-    law = both if robot == "spatial_arm" else by_function
+    in_space = ROBOTS[robot].make(ROBOTS[robot].parameters()).system.p == 3
+    law = both if in_space else by_function
     text = "across = -K1*xi - K2*dxi; along = -K5*(dtheta - speed)"
-    text += "; across2 = -K1*xi2 - K2*dxi2" if robot == "spatial_arm" else ""
+    text += "; across2 = -K1*xi2 - K2*dxi2" if in_space else ""
     values = {**HELD, "control_rate": rate, "hold_at": 1.0}
     runs = [onpath.simulate(robot, law=each, **values) for each in (law, text)]
     assert runs[0].held.any()

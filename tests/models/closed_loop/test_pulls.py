@@ -71,7 +71,7 @@ def test_no_pull_of_many_stops_the_follower(
         assert ROBOTS[robot].caution(parameters) is not None  # said before the run
         return
     assert ROBOTS[robot].caution(parameters) is None
-    check(robot, parameters, seed=2026, pulls=15 if robot == "flexible" else 60)
+    check(robot, parameters, seed=2026, pulls=15 if ROBOTS[robot].flexible_link else 60)
 
 
 def at_their_limits(robot: str, radius: float, **changes: float) -> list[pulls.Result]:

@@ -107,7 +107,9 @@ def assert_same_run(
     A difference of `FEW_BITS` at the start tells how much rounding makes of this run. It ends where
     it has diverged: there, lab and figure stop it.
     """
-    calm = {"output": "redefined"} if name == "flexible" else {}  # composite diverges in some kinds
+    calm = (
+        {"output": "redefined"} if ROBOTS[name].flexible_link else {}
+    )  # composite diverges in some kinds
     parameters: Parameters = replace(ROBOTS[name].parameters(), **{**calm, **values})
     robot = ROBOTS[name].make(parameters)
     kind = kind_of(law, parameters, curve)

@@ -11,16 +11,28 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from onpath.models.control.forecast import growth_rate
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.contract import faults_of
+from onpath.models.systems.robots import RobotEntry
 from onpath.models.systems.rows import Rows
 from onpath.models.systems.two_link_arm import TWO_LINK_ARM
 from tests.support.new_robot import GANTRY, new_robot
+from tests.support.overhead_crane import CRITICAL, CraneParameters
+from tests.support.overhead_crane import ROBOT as CRANE
 
 
-@pytest.mark.parametrize("name", ROBOTS)
-def test_nothing_is_wrong_with_a_robot_of_the_catalogue(name: str) -> None:
-    assert faults_of(ROBOTS[name]) == []
+@pytest.mark.parametrize("entry", [*ROBOTS.values(), CRANE], ids=lambda entry: entry.name)
+def test_nothing_is_wrong_with_a_sound_robot(entry: RobotEntry) -> None:
+    assert faults_of(entry) == []
+
+
+def test_where_its_zero_dynamics_change_is_that_of_the_closed_form() -> None:
+    robot = CRANE.make(CRANE.parameters())
+    rest = robot.rest(np.zeros(3))
+    for alpha in (0.8, CRITICAL - 1e-3, CRITICAL + 1e-3):
+        parameters = CraneParameters(alpha=alpha)
+        assert (growth_rate(robot, parameters, rest) > 0) == (alpha > CRITICAL)
 
 
 def test_nor_with_that_of_the_readme(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
