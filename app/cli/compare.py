@@ -6,7 +6,7 @@ import csv
 import json
 import math
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -18,6 +18,7 @@ from onpath.app.exports.summary_text import STOPPED, finite
 
 if TYPE_CHECKING:
     from onpath.models.studies.comparison import Contest, Outcome
+    from onpath.models.systems.guesses import Guess
 
     Results = dict[tuple[str, str], list[Outcome]]
 
@@ -56,11 +57,12 @@ class CompareCommand:
         from onpath.models.studies.comparison import as_data, beyond_efforts, by_law, row_of
         from onpath.models.studies.experiments import forecast_text, on_path, path_remark
         from onpath.models.studies.unused import unused_text
+        from onpath.models.systems.guessed_numbers import with_mark
 
         check_plot(self.plot)
         check_file(self.csv, (".csv",), "--csv")
         contest = self._contest()
-        laws = _laws(self.law, contest)
+        laws, guesses = _laws(self.law, contest), contest.entry.guesses
         plain = on_path(contest.entry, contest.parameters, contest.curve)
         given = assignments(self.set)
         remark = path_remark(contest.curve)
@@ -71,9 +73,9 @@ class CompareCommand:
         if self.csv:
             with whole_file(self.csv) as path, path.open("w", encoding="utf-8", newline="") as file:
                 rows = [row_of(outcome) for outcomes in results.values() for outcome in outcomes]
-                writer = csv.DictWriter(file, list(rows[0]))
-                writer.writeheader()
-                writer.writerows(rows)
+                writer = csv.writer(file)
+                writer.writerow(with_mark(name, guesses) for name in rows[0])
+                writer.writerows(row.values() for row in rows)
         if self.plot:
             from onpath.app.exports.figures_comparison import draw_comparison
 
@@ -83,7 +85,7 @@ class CompareCommand:
             if beyond := beyond_efforts(contest.robot, outcomes):
                 print(f"onpath: {law_title(law)}: {beyond}", file=sys.stderr)
         data = finite(as_data(contest, results)) if self.json else None
-        print(json.dumps(data, indent=2) if self.json else table(results))
+        print(json.dumps(data, indent=2) if self.json else table(results, guesses))
 
     def _contest(self) -> Contest:
         from onpath.app.cli.assignments import assignments
@@ -176,18 +178,27 @@ def law_columns(laws: Iterable[str]) -> dict[str, str]:
     return {law: numbered.get(law, law) for law in names}
 
 
-def table(results: Results) -> str:
-    """The worst distance [mm] and delay [s] of every law under every obstruction."""
+def table(results: Results, guesses: Sequence[Guess] = ()) -> str:
+    """The worst distance [mm] and delay [s] of every law under every obstruction.
+
+    Args:
+        guesses: about the robot; what rests on them is marked.
+    """
+    from onpath.models.systems.guessed_numbers import with_mark
+
     laws = law_columns(dict.fromkeys(law for law, _ in results))
     obstructions = list(dict.fromkeys(name for _, name in results))
     lines = [f"{short}: {law}" for law, short in laws.items() if short != law]
-    for title, cell in (
-        ("largest distance to the path, worst place  [mm]", _distance),
-        ("delay at the end, worst place  [s]", _delay),
+    for name, title, cell in (
+        ("max_distance_m", "largest distance to the path, worst place  [mm]", _distance),
+        ("delay_s", "delay at the end, worst place  [s]", _delay),
     ):
-        lines += [title, " " * 20 + "".join(f"{name:>19s}" for name in obstructions)]
         lines += [
-            f"  {short:18s}" + "".join(f"{cell(results[law, name]):>19s}" for name in obstructions)
+            with_mark(title, guesses, name),
+            " " * 20 + "".join(f"{each:>19s}" for each in obstructions),
+        ]
+        lines += [
+            f"  {short:18s}" + "".join(f"{cell(results[law, each]):>19s}" for each in obstructions)
             for law, short in laws.items()
         ]
         lines.append("")

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
@@ -16,6 +17,9 @@ from onpath.app.cli.options import Repeated
 from onpath.app.cli.robot_options import NO_OPTIONS, FileOptions
 from onpath.app.common.atomic_file import check_file, check_plot, whole_file
 from onpath.app.exports.summary_text import finite, summary_lines
+
+if TYPE_CHECKING:
+    from onpath.models.systems.guesses import Guess
 
 
 @dataclass(frozen=True)
@@ -94,7 +98,7 @@ class ExperimentCommand:
                 whole_file(self.csv) as scratch,
                 scratch.open("w", encoding="utf-8", newline="") as file,
             ):
-                write_csv(file, chosen.robot(), runs)
+                write_csv(file, chosen.robot(), runs, guesses=chosen.entry.guesses)
         if self.plot:
             with whole_file(self.plot) as scratch:
                 draw_experiment(chosen, runs, scratch)
@@ -102,7 +106,10 @@ class ExperimentCommand:
             if text := beyond_limits(each, chosen.robot()):
                 print(f"onpath: {law_title(each.law)}: {text}", file=sys.stderr)
         reasons = {each.law: each.reason or never_held(chosen, each) for each in runs}
-        print(json.dumps(finite(result), indent=2) if self.json else _table(result, reasons))
+        if self.json:
+            print(json.dumps(finite(result), indent=2))
+        else:
+            print(_table(result, reasons, chosen.entry.guesses))
 
 
 @dataclass(frozen=True)
@@ -152,14 +159,14 @@ class ZeroDynamicsCommand:
             print(json.dumps(robot_json(result), indent=2) if self.json else robot_table(result))
 
 
-def _table(result: dict, reasons: dict[str, str]) -> str:
+def _table(result: dict, reasons: dict[str, str], guesses: Sequence[Guess]) -> str:
     """The summary as text."""
     from onpath.models.control.laws.own import law_title
 
     lines = [result["experiment"]]
     for law, values in result["laws"].items():
         lines.append(f"  {law_title(law)}")
-        lines += [f"    {line}" for line in summary_lines(values)]
+        lines += [f"    {line}" for line in summary_lines(values, guesses)]
         if reasons[law]:
             lines.append(f"    {reasons[law]}")
     return "\n".join(lines)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -11,7 +11,6 @@ import tyro
 
 from onpath.app.cli.assignments import assignments
 from onpath.app.cli.options import Repeated
-from onpath.app.common.user_files import is_robot_file
 
 if TYPE_CHECKING:
     from onpath.models.systems.robots import RobotEntry
@@ -22,8 +21,8 @@ class RobotOptions:
     """Options for a robot that is a file."""
 
     tip: str = ""
-    """For a robot's file: the link, or site, whose origin is the end-point; by default the only one
-    at the end."""
+    """For a robot's file: the link, or site, whose origin is the end-point; by default the
+    likeliest."""
     pose: Repeated = ()
     """For a robot's file: where a joint stands at home, as joint=value in rad or m; repeat for
     more. By default a pose is chosen."""
@@ -32,6 +31,10 @@ class RobotOptions:
     armature: float = 0.0
     """For a robot's file: inertia of the motors as seen at the joints, in kg m², which URDF leaves
     out."""
+    density: float | None = None
+    """For a robot's file without masses: density of its links, in kg/m³; 1000 by default."""
+    mass: float | None = None
+    """For a robot's file without masses: mass of all that moves, in kg, instead of a density."""
     package: Repeated = ()
     """For a robot's file: the folder of a package with meshes, as NAME=FOLDER; repeat for more."""
 
@@ -60,10 +63,12 @@ class RobotOptions:
         Raises:
             ValueError: see `name_of`.
         """
-        if self != NO_OPTIONS and not any(map(is_robot_file, robots)):
-            options = "--tip, --pose, --lock, --armature and --package"
-            raise ValueError(f"{options} need --robot FILE")
-        return [self._added(robot) if is_robot_file(robot) else robot for robot in robots]
+        from onpath.app.common.robot_places import is_from_file  # slow to import
+
+        if self != NO_OPTIONS and not any(map(is_from_file, robots)):
+            *others, last = (f"--{option.name}" for option in fields(self))
+            raise ValueError(f"{', '.join(others)} and {last} need --robot FILE")
+        return [self._added(robot) if is_from_file(robot) else robot for robot in robots]
 
     def _added(self, robot: str) -> str:
         """The name of the robot of a file, which is added."""
@@ -75,6 +80,8 @@ class RobotOptions:
             pose=_numbers("--pose", self.pose),
             lock=_numbers("--lock", self.lock),
             armature=self.armature,
+            density=self.density,
+            mass=self.mass,
             packages=_folders(self.package),
         )
         return entry.name

@@ -7,6 +7,7 @@ from pathlib import Path
 from onpath.models.errors import Message
 from onpath.models.systems.catalogue import add_robot
 from onpath.models.systems.file_chain import Options
+from onpath.models.systems.guessed_numbers import told_guess
 from onpath.models.systems.robot_file import read_robot
 from onpath.models.systems.robots import RobotEntry
 
@@ -16,13 +17,16 @@ _FILES = dict[str, tuple[Path, Options]]()  # by name
 def robot_of_file(file: Path, options: Options) -> tuple[RobotEntry, tuple[Message, ...]]:
     """Add the robot of a file to the catalogue; return it, with remarks for the user.
 
+    What has been guessed is among the remarks, but for the pose, which one sees. Each is said once.
+
     Raises:
         ValueError: see `read_robot`.
     """
     read = read_robot(file, options)
     entry = add_robot(read.entry)
     _FILES[entry.name] = file.resolve(), options
-    return entry, read.remarks
+    guesses = (told_guess(guess) for guess in read.guesses if guess.kind != "pose")
+    return entry, tuple({str(remark): remark for remark in (*read.remarks, *guesses)}.values())
 
 
 def robot_arguments(robot: str) -> list[str]:
@@ -39,4 +43,7 @@ def robot_arguments(robot: str) -> list[str]:
     ):
         for name, value in pairs.items():
             given += [option, f"{name}={value}"]
-    return given + (["--armature", str(options.armature)] if options.armature else [])
+    given += ["--armature", str(options.armature)] if options.armature else []
+    for option, number in (("--density", options.density), ("--mass", options.mass)):
+        given += [] if number is None else [option, str(number)]
+    return given

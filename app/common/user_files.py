@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
-
-ROBOT_FILES = ".urdf", ".xml", ".mjcf"
 
 
 def user_file(file: str | Path) -> Path:
@@ -21,8 +18,3 @@ def user_file(file: str | Path) -> Path:
     if path.is_dir():
         raise IsADirectoryError(f"{path}: that is a folder")
     return path
-
-
-def is_robot_file(robot: Any) -> bool:
-    """Whether a robot is given as a URDF or MJCF file."""
-    return isinstance(robot, str | Path) and Path(robot).suffix.lower() in ROBOT_FILES

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -34,6 +35,12 @@ from onpath.models.studies.arena import (
 )
 from onpath.models.studies.path_text import curve_from_text
 from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.guessed_numbers import (
+    Quantity,
+    guessed_kinds,
+    told_guesses,
+    with_mark,
+)
 from onpath.models.systems.parameter_specs import Spec
 
 SHOWN: dict[str, tuple[float, str, int]] = {
@@ -46,6 +53,8 @@ SHOWN: dict[str, tuple[float, str, int]] = {
 """Measure -> factor, unit and decimals with which it is shown."""
 BETTER = {name: "larger" for name in LARGER_IS_BETTER} | {"delay_s": "near_zero"}
 """What is better, if it is not a smaller value."""
+MEASURED: tuple[Quantity, ...] = ("end_point", "coupling")
+"""What the measures tell of a robot, of what may be guessed."""
 NO_BREAK = "\N{NO-BREAK SPACE}"
 WIDTH, HEIGHT, MARGIN = 460, 150, 4  # of the picture over time
 SIDE = 150  # of the picture of the plane
@@ -79,8 +88,9 @@ def arena_page(contents: Contents, words: Words) -> str:
         marks, tried = dict[int, str](), {each.trial.number: each.trial for each in results}
         robots.append(
             {
-                "label": robot_label(robot, words),
+                "label": _marked_label(robot, words),
                 "settings": _settings(robot, words),
+                "guesses": told_guesses(ROBOTS[robot].guesses, words.language),
                 "lines": _lines(robot, contents, titles, marks, words),
                 "trials": len(tried),
             }
@@ -119,6 +129,12 @@ def arena_page(contents: Contents, words: Words) -> str:
         planned=contents.planned,
         command=contents.command,
     )
+
+
+def _marked_label(robot: str, words: Words) -> str:
+    """A robot's label, with a mark if the numbers of its table rest on guesses."""
+    label, guesses = robot_label(robot, words), ROBOTS[robot].guesses
+    return with_mark(label, guesses, "max_distance", words.language)
 
 
 def _limit(row: Row) -> str:
@@ -319,6 +335,7 @@ def run_rows(contents: Contents) -> Iterator[dict[str, object]]:
         yield {
             "trial": trial.number,
             "robot": trial.robot,
+            "guessed": " ".join(guessed_kinds(ROBOTS[trial.robot].guesses, MEASURED)),
             "path": trial.path,
             "obstruction": trial.obstruction,
             "condition": trial.condition,
@@ -365,9 +382,15 @@ def markdown(contents: Contents, words: Words) -> str:
             law = [f"`{row[0]}`", words(f"arena.{_limit(row)}")]
             lines.append([*law, *shown, str(stopped(row, results))])
         number = len({each.trial.number for each in results})
-        title = f"{robot_label(robot, words)}, {words('arena.trials', count=number)}"
-        blocks.append("\n".join([title, "", *_aligned(lines)]))
+        title = f"{_plain_text(_marked_label(robot, words))}, {words('arena.trials', count=number)}"
+        told = map(_plain_text, told_guesses(ROBOTS[robot].guesses, words.language))
+        blocks.append("\n".join([title, "", *_aligned(lines), *(f"\n{each}" for each in told)]))
     return "\n\n".join(blocks)
+
+
+def _plain_text(text: str) -> str:
+    """A text with names from a file, in which nothing is a mark of Markdown."""
+    return re.sub(r"([\\`*\[\]<>|&])", r"\\\1", text)
 
 
 def _aligned(lines: Sequence[Sequence[str]]) -> Iterator[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import matplotlib
@@ -15,9 +15,13 @@ from onpath.app.common.palette import Colour, of_law
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.closed_loop.trajectory import Trajectory
 from onpath.models.studies.experiments import Experiment
+from onpath.models.systems.guessed_numbers import with_mark
+from onpath.models.systems.guesses import Guess
 
 EXTRA = {"deflection": ("deflection of\nthe tip  [mm]", 1e3)}
 """Label and scale of each of `Robot.extras` that is drawn."""
+PANELS = {"distance": "distance", "xi": "xi", "eta1": "theta", "eta2": "theta_rate", "u": "tau"}
+"""Name of each panel -> that of its quantity in `quantities_of`."""
 STYLES = ("-", "--", ":")
 """Line styles of the first, second and third component of a quantity."""
 Quantity = Callable[[Trajectory], tuple[np.ndarray]]
@@ -44,11 +48,12 @@ def draw_experiment(experiment: Experiment, runs: list[Trajectory], path: Path) 
 
 def experiment_figure(experiment: Experiment, runs: list[Trajectory]) -> Figure:
     """Plot the end-point in output space, and distance, xi, eta, speed and torque over time."""
-    panels = panels_of(level_set=any(run.level_set for run in runs))
+    level_set = any(run.level_set for run in runs)
+    panels = panels_of(level_set=level_set, guesses=experiment.entry.guesses)
     panels[1:1] = _extra_panels(experiment)
     figure = ShownFigure(figsize=(13, 2.1 * len(panels)), layout="constrained")
     axes = figure.subplot_mosaic([["space", name] for name, _, _ in panels], width_ratios=(1, 1.25))
-    figure.suptitle(experiment.title, fontsize=15)
+    figure.suptitle(without_math(experiment.title), fontsize=15)
     _draw_space(axes["space"], experiment, runs)
     for name, label, column in panels:
         for run in runs:
@@ -69,12 +74,31 @@ def save(figure: Figure, path: Path) -> None:
         figure.savefig(path, metadata=_reproducible(path), dpi=110)
 
 
-def panels_of(words: Words = ENGLISH, level_set: bool = False) -> list[tuple[str, str, Quantity]]:
+def without_math(name: str) -> str:
+    """A name of a user's in which no $ begins a formula."""
+    return name.replace("$", r"\$")
+
+
+def panels_of(
+    words: Words = ENGLISH, level_set: bool = False, guesses: Sequence[Guess] = ()
+) -> list[tuple[str, str, Quantity]]:
     """Axes name, label and quantity of each panel, from top to bottom.
 
     Args:
         level_set: whether the first component of xi is in [m²].
+        guesses: about the robot; what rests on them is marked.
     """
+    panels = _panels(words, level_set)
+    return [(name, _marked(name, label, guesses, words), of) for name, label, of in panels]
+
+
+def _marked(name: str, label: str, guesses: Sequence[Guess], words: Words) -> str:
+    """A panel's label, with the mark on a line of its own."""
+    marked = with_mark("", guesses, PANELS[name], words.language)
+    return f"{label}\n{marked.strip()}" if marked else label
+
+
+def _panels(words: Words, level_set: bool) -> list[tuple[str, str, Quantity]]:
     xi = r"$\xi_1=s(y)$  [mm$^2$]" if level_set else r"$\xi_1$  [mm]"
     return [
         ("distance", words("figure.distance"), lambda r: (1e3 * r.distance[:, None],)),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 from base64 import b64encode
+from collections.abc import Sequence
 from datetime import datetime
 
 from onpath.app.common.templates import render
@@ -15,6 +16,7 @@ from onpath.lessons.progress import Progress
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.trajectory import write_csv
 from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.guesses import Guess
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
 
@@ -27,7 +29,8 @@ def csv_file(robot: str, parameters: Parameters, history: HistoryCopy) -> bytes:
     Args:
         robot: name in the catalogue.
     """
-    return csv_bytes(ROBOTS[robot].make(parameters), history.segments())
+    entry = ROBOTS[robot]
+    return csv_bytes(entry.make(parameters), history.segments(), entry.guesses)
 
 
 def picture_file(
@@ -70,11 +73,16 @@ def report_file(course: Course, progress: Progress, code: str, made: datetime) -
     return report(LessonState(course, progress), code, made)
 
 
-def csv_bytes(robot: Robot, history: list[Segment]) -> bytes:
-    """Every millisecond of the history as CSV, one side after the other."""
+def csv_bytes(robot: Robot, history: list[Segment], guesses: Sequence[Guess] = ()) -> bytes:
+    """Every millisecond of the history as CSV, one side after the other.
+
+    Args:
+        guesses: about the robot.
+    """
     file = io.StringIO()
     runs = [(side, run) for side, parts in replay(robot, history).items() for run in parts]
-    write_csv(file, robot, [run for _, run in runs], [side for side, _ in runs])
+    trajectories, sides = [run for _, run in runs], [side for side, _ in runs]
+    write_csv(file, robot, trajectories, sides, guesses)
     return file.getvalue().encode()
 
 

@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from onpath.app.common.palette import OF_SIDE
-from onpath.app.exports.figures import STYLES, Quantity, draw_column, panels_of
+from onpath.app.exports.figures import STYLES, Quantity, draw_column, panels_of, without_math
 from onpath.lessons.labels import (
     parameter_label,
     parameter_unit,
@@ -73,7 +73,8 @@ def history_figure(
     """The figure of `draw_history`."""
     every = [run for parts in runs.values() for run in parts]
     level_set = any(run.level_set for run in every)
-    panels = panels_of(words, level_set)
+    entry = ROBOTS[robot]
+    panels = panels_of(words, level_set, entry.guesses)
     figure = Figure(figsize=(11, 2.3 * len(panels) + 0.6), layout="constrained")
     axes = figure.subplots(len(panels), 1, sharex=True)
     for axis, (name, label, column) in zip(axes, panels, strict=True):
@@ -85,11 +86,10 @@ def history_figure(
             axis.set_title(meaning, loc="left", fontsize=SMALL, color=GREY)
         if count > 1:
             _add_styles(axis, _line_names(name, count, words))
-    entry = ROBOTS[robot]
     figure.suptitle(
         words(
             "figure.history",
-            robot=robot_label(robot, words),
+            robot=without_math(robot_label(robot, words)),
             path=path_label(path, words),
             seconds=f"{_span(every):.0f}",
         ),

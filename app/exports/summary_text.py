@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
+
+from onpath.models.systems.guessed_numbers import with_mark
+from onpath.models.systems.guesses import Guess
 
 ROWS: tuple[tuple[str, str, Callable[[float], str]], ...] = (
     ("max_distance_m", "max distance", lambda v: f"{v * 1e3:.2f} mm"),
@@ -18,22 +21,23 @@ STOPPED = "stopped"
 """Stands in tables for the numbers of a run that was stopped."""
 
 
-def rows_of(values: Mapping[str, Any]) -> list[tuple[str, str]]:
+def rows_of(values: Mapping[str, Any], guesses: Sequence[Guess] = ()) -> list[tuple[str, str]]:
     """Name and value of each quantity as text; quantities that a run lacks are omitted.
 
     Args:
         values: summary of one law, from `models.studies.experiments.summary`.
+        guesses: about the robot; numbers that rest on them are marked.
     """
     return [
-        (title, STOPPED if math.isinf(values[key]) else show(values[key]))
+        (title, STOPPED if math.isinf(values[key]) else with_mark(show(values[key]), guesses, key))
         for key, title, show in ROWS
         if values[key] is not None
     ]
 
 
-def summary_lines(values: Mapping[str, Any]) -> list[str]:
+def summary_lines(values: Mapping[str, Any], guesses: Sequence[Guess] = ()) -> list[str]:
     """One line per quantity; see `rows_of`."""
-    return [f"{title:26s} {value}" for title, value in rows_of(values)]
+    return [f"{title:26s} {value}" for title, value in rows_of(values, guesses)]
 
 
 def finite(data: Any) -> Any:

@@ -8,6 +8,8 @@ from functools import lru_cache
 from typing import Any
 
 from onpath.lessons.words import Words
+from onpath.models.systems.guessed_numbers import with_mark
+from onpath.models.systems.guesses import Guess
 
 MOST_LINES = 3  # of one robot in a row
 XI = ("xi", "xi_rate")
@@ -108,14 +110,28 @@ def rounding(field: str, is_level_set: bool) -> float:
     return (row.scale**2 if is_level_set and field in XI else row.scale) / row.finest
 
 
-@lru_cache(maxsize=64)
-def row_data(fields: Fields, is_level_set: bool, words: Words) -> list[dict[str, Any]]:
+def row_data(
+    fields: Fields, is_level_set: bool, words: Words, guesses: Sequence[Guess] = ()
+) -> list[dict[str, Any]]:
     """The rows that a robot can have, for a page; see `RowData` in assets/web/core/engine.ts.
 
     Args:
         fields: that are stored of the robot.
         is_level_set: whether ξ₁ is an area, [m²], instead of a distance.
+        guesses: about the robot; rows that rest on them are marked.
     """
+    plain = _rows(fields, is_level_set, words)
+    if not guesses:
+        return plain
+    names = {row.name: "tau" if row.field == "u" else row.field for row in ROWS}
+    return [
+        {**row, "label": with_mark(row["label"], guesses, names[row["name"]], words.language)}
+        for row in plain
+    ]
+
+
+@lru_cache(maxsize=64)
+def _rows(fields: Fields, is_level_set: bool, words: Words) -> list[dict[str, Any]]:
     sizes = dict(fields)
     return [
         _data(row, min(sizes[row.field], MOST_LINES), is_level_set and row.field in XI, words)

@@ -22,6 +22,7 @@ from onpath.models.control.sides import SIDES
 from onpath.models.studies.experiments import Experiment, on_path, summary
 from onpath.models.studies.log_identification import FileEstimate
 from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.guessed_numbers import told_guesses
 from onpath.models.systems.parameters import time_step
 
 
@@ -135,8 +136,8 @@ def run_bundle(text: str, experiment: Experiment, run: Trajectory, reason: str) 
         text,
         picture,
         head=(f"{law_title(run.law)}, {experiment.title}", f"{len(run.t)} ms"),
-        rows=rows_of(summary(experiment, [run])["laws"][run.law]),
-        after=(reason,),
+        rows=rows_of(summary(experiment, [run])["laws"][run.law], experiment.entry.guesses),
+        after=(reason, *told_guesses(experiment.entry.guesses)),
     )
 
 

@@ -24,6 +24,8 @@ from onpath.models.closed_loop.trajectory import (
 )
 from onpath.models.control.laws.own import law_title
 from onpath.models.studies.experiments import Experiment, experiment_from, never_held, summary
+from onpath.models.systems.guessed_numbers import told_guesses
+from onpath.models.systems.guesses import Guess
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -58,6 +60,11 @@ class Run:
     def law(self) -> str:
         """Name of the control law."""
         return self.trajectory.law
+
+    @property
+    def guesses(self) -> tuple[Guess, ...]:
+        """What is guessed about the robot, such as its masses, because its file does not say it."""
+        return self.experiment.entry.guesses
 
     @property
     def t(self) -> Array:
@@ -190,10 +197,12 @@ class Run:
         check_writable(path)
         trajectories = self._with(others)
         with whole_file(path) as scratch, scratch.open("w", encoding="utf-8", newline="") as opened:
-            write_csv(opened, self.experiment.robot(), trajectories)
+            write_csv(opened, self.experiment.robot(), trajectories, guesses=self.guesses)
 
     def to_dataframe(self) -> DataFrame:
         """A data frame with one row per millisecond, and the columns of `to_csv`.
+
+        Its `attrs["guesses"]` says what is guessed about the robot.
 
         Raises:
             ImportError: pandas is not installed; `pip install "onpath[pandas]"` does that.
@@ -205,6 +214,7 @@ class Run:
         frame["held"] = run.held
         frame.insert(0, "t_s", run.t)
         frame.insert(1, "law", self.law)
+        frame.attrs["guesses"] = told_guesses(self.guesses)
         return frame
 
     def __reduce__(self) -> tuple[Callable[..., Run], tuple[int, str, dict[str, Any]]]:
@@ -250,8 +260,9 @@ class Run:
 
     def __repr__(self) -> str:
         lines = [f"{law_title(self.law)}, {self.experiment.title}, {len(self.t)} ms"]
-        lines += summary_lines(self.summary())
-        return "\n  ".join([*lines, self.reason] if self.reason else lines)
+        lines += summary_lines(self.summary(), self.guesses)
+        lines += [self.reason] if self.reason else []
+        return "\n  ".join([*lines, *told_guesses(self.guesses)])
 
 
 def read_run(form: int, made_by: str, data: dict[str, Any]) -> Run:

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from onpath.app.common.newcomer import NEWCOMER as NEWCOMER
 from onpath.app.common.own_laws import law_given
-from onpath.app.common.user_files import is_robot_file
+from onpath.app.common.robot_places import is_from_file
 from onpath.app.notebook.arguments import (
     array_of,
     ask_unit,
@@ -388,7 +388,7 @@ def entry_named(robot: str | Path | RobotEntry) -> RobotEntry:
     if isinstance(robot, RobotEntry):
         return robot
     check_one("robot", robot)
-    if is_robot_file(robot):
+    if is_from_file(robot):
         return robot_from(robot)
     with looked_up("onpath.robots()"):
         return robot_named(str(robot))

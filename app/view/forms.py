@@ -13,6 +13,8 @@ from onpath.lessons.words import Words
 from onpath.models.closed_loop.lab_settings import SETTINGS
 from onpath.models.control.laws.registry import LAWS, law_named
 from onpath.models.control.settable import specs
+from onpath.models.systems.guessed_numbers import with_mark
+from onpath.models.systems.guesses import Guess
 from onpath.models.systems.parameter_specs import Need, Spec
 from onpath.models.systems.parameters import Parameters
 
@@ -47,18 +49,20 @@ def setting_field(
     mark: FieldValue | None = None,
     options: Sequence[Any] = (),
     section: str = "",
+    guesses: Sequence[Guess] = (),
 ) -> FormField:
     """The field of a declared setting.
 
     Args:
         options: those of a choice that a page has; by default all.
+        guesses: about the robot; a setting that rests on them is marked.
     """
     unit, factor = spec.shown_in or (parameter_unit(name, spec, words), 1.0)
     offered = options or (spec.options if spec.kind == "choice" else ())
     return FormField(
         name=name,
         kind=spec.kind,
-        label=parameter_label(name, spec, words),
+        label=with_mark(parameter_label(name, spec, words), guesses, name, words.language),
         symbol=spec.symbol,
         unit=unit,
         help=parameter_help(name, spec, words),

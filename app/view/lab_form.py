@@ -41,9 +41,9 @@ from onpath.app.view.laws import suitable
 from onpath.app.view.notes import NEVER, alpha_note, deflections, wall_forces
 from onpath.app.view.paths import outline, preset_label
 from onpath.app.view.poles import poles_of
-from onpath.app.view.robots import picture_of
+from onpath.app.view.robots import about_robot, picture_of
 from onpath.lessons.action_schema import StepSetup
-from onpath.lessons.labels import robot_label, robot_text
+from onpath.lessons.labels import robot_label
 from onpath.lessons.sides import law_label, law_text
 from onpath.lessons.vocabulary.names import DRAWINGS
 from onpath.lessons.words import Words
@@ -308,7 +308,7 @@ def _fields(lab: _Lab, marks: Mapping[str, FieldValue], words: Words) -> dict[st
             name="robot",
             kind="button",
             label=robot_label(lab.robot, words),
-            help=robot_text(entry, words),
+            help=about_robot(entry, words),
             picture=picture_of(entry),
         ),
         _path_field(robot, lab.path, words),
@@ -340,8 +340,17 @@ def _fields(lab: _Lab, marks: Mapping[str, FieldValue], words: Words) -> dict[st
         elif link is not None and name in (*link.beam, *link.composite):
             section = words("flexible.beam" if name in link.beam else "flexible.composite")
         mark = marks.get(name)
-        field = setting_field(name, spec, words, default=default, mark=mark, section=section)
-        found.append(field)
+        found.append(
+            setting_field(
+                name,
+                spec,
+                words,
+                default=default,
+                mark=mark,
+                section=section,
+                guesses=entry.guesses,
+            )
+        )
     if link is not None:
         found = list(_with_link(found, words))
     found += [

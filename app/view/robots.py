@@ -11,6 +11,7 @@ from onpath.assets import asset_path
 from onpath.lessons.labels import robot_label, robot_text
 from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.guessed_numbers import guess_sentences
 from onpath.models.systems.robots import RobotEntry
 
 
@@ -26,9 +27,15 @@ def robot_card(entry: RobotEntry, words: Words) -> RobotCard:
         name=entry.name,
         label=robot_label(entry.name, words),
         differs=words.get(f"robots.differs_{entry.name}", text),
-        text=text,
+        text=about_robot(entry, words),
         picture=picture_of(entry),
     )
+
+
+def about_robot(entry: RobotEntry, words: Words) -> str:
+    """What a robot is, and what is guessed about it, with what settles it."""
+    text = robot_text(entry, words)
+    return " ".join([text, *guess_sentences(entry.guesses, words.language)])
 
 
 @lru_cache(maxsize=32)

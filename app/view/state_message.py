@@ -14,6 +14,7 @@ from onpath.lessons.labels import robot_label
 from onpath.lessons.sides import displayed_names, law_text, side_titles
 from onpath.lessons.words import Words
 from onpath.models.control.laws.registry import law_named
+from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.law_parameters import LEVEL_SET
 
 
@@ -55,7 +56,7 @@ def state_message(
     laws, run, rate = snapshot.laws, snapshot.run, snapshot.settings.rate
     titles = side_titles(laws, words)
     is_level_set = snapshot.parameters["across"] == LEVEL_SET
-    names = displayed_names(laws, words)
+    names, guesses = displayed_names(laws, words), ROBOTS[snapshot.key.robot].guesses
     return StateMessage(
         language=words.language,
         robot=snapshot.key.robot,
@@ -83,7 +84,7 @@ def state_message(
         drawn=seen.drawn,
         waits=words("say.waits") if run.waits else "",
         own=not snapshot.key.student,
-        rows=row_data(snapshot.key.fields, is_level_set, words),
+        rows=row_data(snapshot.key.fields, is_level_set, words, guesses),
         laws=list(run.laws.values()),
         shared=snapshot.shared,
     )

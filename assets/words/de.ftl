@@ -1953,3 +1953,22 @@ setup-draw = Zeichnen
 setup-file = Datei…
 setup-file_hint = Eine Zeichnung (SVG), Punkte (CSV) oder G-Code. Von mehreren Linien wird die längste genommen.
 setup-compare = Gesetze vergleichen…
+
+## Was an einem Roboter aus einer Datei geschätzt ist
+
+guess-mark = geschätzt: { $kinds }
+guess-next = { $listed }, { $other }
+guess-last = { $listed } und { $other }
+guess-mass = Masse
+guess-inertia = Trägheit
+guess-effort = Motorgrenzen
+guess-tip = Endpunkt
+guess-pose = Stellung
+guess-told = { $what } ({ $line } legt es fest)
+
+## Roboter, die durch einen Ordner oder ein Paket angegeben sind
+
+robot_file-empty_folder = { $folder } enthält keine Roboterdatei ({ $endings })
+robot_file-which_file = { $folder } enthält { $count } Roboterdateien. Bitte eine angeben: { $lines }
+robot_file-not_fetched = robot_descriptions kann { $name } nicht laden: { $reason }
+robot_file-no_description = { $name } aus robot_descriptions hat keine lesbare Datei

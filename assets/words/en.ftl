@@ -1547,3 +1547,22 @@ setup-draw = Draw
 setup-file = File…
 setup-file_hint = A drawing (SVG), points (CSV) or G-code. Of several lines, the longest is taken.
 setup-compare = Compare laws…
+
+## What is guessed about a robot from a file
+
+guess-mark = guessed: { $kinds }
+guess-next = { $listed }, { $other }
+guess-last = { $listed } and { $other }
+guess-mass = mass
+guess-inertia = inertia
+guess-effort = motor limits
+guess-tip = end-point
+guess-pose = pose
+guess-told = { $what } ({ $line } settles it)
+
+## Robots that are named by a folder or a package
+
+robot_file-empty_folder = { $folder } has no robot's file ({ $endings })
+robot_file-which_file = { $folder } has { $count } robots' files. Name one: { $lines }
+robot_file-not_fetched = robot_descriptions cannot fetch { $name }: { $reason }
+robot_file-no_description = { $name } of robot_descriptions has no file that can be read

@@ -15,6 +15,8 @@ from onpath.models.control.laws.registry import law_named
 from onpath.models.layout import Layout
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.distance import path_distance
+from onpath.models.systems.guessed_numbers import with_mark
+from onpath.models.systems.guesses import Guess
 from onpath.models.systems.robots import Robot
 
 MEASURED = "measured"
@@ -128,9 +130,13 @@ def measured_names(robot: Robot) -> list[str]:
 
 
 def header(
-    robot: Robot, level_set: bool = False, sides: bool = False, measured: bool = False
+    robot: Robot,
+    level_set: bool = False,
+    sides: bool = False,
+    measured: bool = False,
+    guesses: Sequence[Guess] = (),
 ) -> list[str]:
-    """Column names of the CSV, with units.
+    """Column names of the CSV, with units, and marks such as " (guessed: mass)".
 
     xi1 is in [m], or in [m²] with `level_set`, and its rate accordingly. The references
     are the reference point of laws with a clock, and the wanted speed. The distance is that of the
@@ -140,11 +146,12 @@ def header(
         level_set: whether xi1 is a level set.
         sides: whether there is a column for the side.
         measured: whether there are columns for the measured joint angles.
+        guesses: about the robot; what rests on them is marked.
     """
     p, m = robot.system.p, robot.system.m
     units = (name.rpartition("_") for name in robot.system.coordinate_names)
     xi = [(f"xi{i + 1}", "m2" if level_set and i == 0 else "m") for i in range(p - 1)]
-    return [
+    names = [
         "t_s",
         *["side"] * sides,
         "law",
@@ -163,6 +170,12 @@ def header(
         "held",
         *(measured_names(robot) if measured else ()),
     ]
+    return [with_mark(name, guesses) for name in names]
+
+
+def without_mark(column: str) -> str:
+    """The name of a column without the mark of what it rests on."""
+    return column.partition(" (guessed")[0]
 
 
 def numbers_of(robot: Robot, run: Trajectory, measured: bool) -> Array:
@@ -184,6 +197,7 @@ def write_csv(
     robot: Robot,
     trajectories: Iterable[Trajectory],
     sides: Sequence[str] | None = None,
+    guesses: Sequence[Guess] = (),
 ) -> None:
     """Write one row per millisecond and control law, with nine significant digits.
 
@@ -191,12 +205,13 @@ def write_csv(
 
     Args:
         sides: the side of each trajectory, for a column of its own; None for no such column.
+        guesses: about the robot; see `header`.
     """
     writer = csv.writer(file, lineterminator="\n")
     runs = list(trajectories)
     read = any(MEASURED in run.fields for run in runs)
     level_set = any(run.level_set for run in runs)
-    writer.writerow(header(robot, level_set, sides is not None, read))
+    writer.writerow(header(robot, level_set, sides is not None, read, guesses))
     for number, run in enumerate(runs):
         columns = numbers_of(robot, run, read)
         law = f'"{run.law}"' if "," in run.law else run.law

@@ -42,6 +42,7 @@ from onpath.models.errors import Message
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.distance import path_distance
 from onpath.models.systems.efforts import exceeded
+from onpath.models.systems.guessed_numbers import told_guesses
 from onpath.models.systems.parameters import Parameters, time_step
 from onpath.models.systems.robots import Robot, RobotEntry
 
@@ -359,12 +360,14 @@ def _loop(robot: Robot, kind: Kind) -> ManyLoop:
 def as_data(contest: Contest, results: Mapping[tuple[str, str], Sequence[Outcome]]) -> Any:
     """The content of `--json`; numbers have nine significant digits.
 
-    `beyond_efforts` has what each law asks of the motors beyond the limits of the robot's file.
+    `beyond_efforts` has what each law asks of the motors beyond the limits of the robot's file,
+    `guesses` what that file leaves open.
     """
     beyond = {law: beyond_efforts(contest.robot, each) for law, each in by_law(results).items()}
     return {
         "robot": contest.entry.name,
         "parameters": values_of(contest.parameters),
+        "guesses": told_guesses(contest.entry.guesses),
         "beyond_efforts": {law: str(found) for law, found in beyond.items() if found},
         "laws": {
             law: {

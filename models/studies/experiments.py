@@ -45,6 +45,7 @@ from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE, ROBOTS
 from onpath.models.systems.efforts import exceeded
 from onpath.models.systems.flexible_parameters import FlexibleParameters
 from onpath.models.systems.flexible_robot import flexible_five_bar_robot, start_of
+from onpath.models.systems.guessed_numbers import told_guesses
 from onpath.models.systems.law_parameters import LEVEL_SET
 from onpath.models.systems.parameter_specs import unknown_name
 from onpath.models.systems.parameters import Parameters, declared, rise_of
@@ -466,7 +467,8 @@ def summary(experiment: Experiment, runs: list[Trajectory]) -> dict[str, Any]:
         }
         for run in runs
     }
-    return {"experiment": experiment.name, "laws": laws}
+    guesses = told_guesses(experiment.entry.guesses)
+    return {"experiment": experiment.name, "laws": laws} | ({"guesses": guesses} if guesses else {})
 
 
 def _summary(run: Trajectory) -> dict[str, Any]:

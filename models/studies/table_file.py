@@ -30,6 +30,7 @@ from pathlib import Path
 import numpy as np
 
 from onpath.models.arrays import Array
+from onpath.models.closed_loop.trajectory import without_mark
 from onpath.models.errors import CodedError
 from onpath.models.systems.parameter_specs import MINUS
 
@@ -114,7 +115,7 @@ def _read(
     else:
         unquoted = re.sub('"[^"]*"', "", line)
         separator = next((each for each in SEPARATORS if each in unquoted), ",")
-    names = cells_of(line, separator, number)
+    names = [without_mark(cell) for cell in cells_of(line, separator, number)]
     while names and not names[-1]:
         names.pop()
     wanted = [_place(name, names, number) for name in numbers]

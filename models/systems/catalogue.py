@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copyreg
 from collections.abc import Callable
+from dataclasses import replace
 from importlib import import_module
 from pkgutil import iter_modules
 from typing import Any
@@ -52,8 +53,8 @@ def add_robot(entry: RobotEntry) -> RobotEntry:
     Call it before a server listens: pages and labs expect that the robots stay the same.
 
     Returns:
-        The entry, or the one added earlier from the same file and options: its loops may already
-        be compiled.
+        The entry, or the one added earlier from the same file and options, with what this one
+        says of itself: its loops may already be compiled, and a guess may be settled meanwhile.
 
     Raises:
         CodedError: another robot has this name.
@@ -61,6 +62,10 @@ def add_robot(entry: RobotEntry) -> RobotEntry:
     known = ROBOTS.setdefault(entry.name, entry)
     if known is not entry and known.source is None:
         raise CodedError("robot_file.same_name", name=entry.name)
+    if known != entry:
+        return known
+    if known.guesses != entry.guesses:
+        known = ROBOTS[entry.name] = replace(entry, make=known.make)
     return known
 
 

@@ -17,6 +17,8 @@ from onpath.models.errors import Message
 from onpath.models.paths.frames import Frame, Plane
 from onpath.models.systems.drawing import Drawing
 from onpath.models.systems.forces import Grip
+from onpath.models.systems.guessed_numbers import guess_sentences
+from onpath.models.systems.guesses import Guess
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.rigid_chain import Chain, ChainSource
 from onpath.models.systems.robot_sketch import described, sketch
@@ -390,6 +392,11 @@ class RobotEntry:
     linkage: BalancedLinkage | None = None
     source: ChainSource | None = None
 
+    @property
+    def guesses(self) -> tuple[Guess, ...]:
+        """What is guessed where the robot's file says nothing."""
+        return () if self.source is None else self.source.guesses
+
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, RobotEntry):
             return NotImplemented
@@ -402,12 +409,17 @@ class RobotEntry:
         return hash(self.name)
 
     def __repr__(self) -> str:
-        return f"<robot {self.name}: {self.label}. {self.text}>"
+        return f"<robot {self.name}: {self.label}. {self._text}>"
 
     def _repr_html_(self) -> str:
         robot = self.make(self.parameters())
         joints = robot.chain.joints if robot.chain else ()
-        return described(self.label, self.name, self.text, robot.sketched(), joints)
+        return described(self.label, self.name, self._text, robot.sketched(), joints)
+
+    @property
+    def _text(self) -> str:
+        """What the robot is, and what is guessed about it."""
+        return " ".join([self.text, *guess_sentences(self.guesses)])
 
     def keeps_states(self, before: Parameters, now: Parameters) -> bool:
         """Whether two sets of parameters give the same robot apart from those in `goes_on`."""

@@ -120,7 +120,12 @@ def common_data(figure: FigureChoice, words: Words, numbers: Mapping[str, Any]) 
         "returns": RETURNS,
         "full": FULL,
         "strip": robot.drawing.strip,
-        "rows": row_data(sample_layout(robot).fields, figure.parameters.across == LEVEL_SET, words),
+        "rows": row_data(
+            sample_layout(robot).fields,
+            figure.parameters.across == LEVEL_SET,
+            words,
+            figure.entry.guesses,
+        ),
         "efforts": _efforts(robot),
         "poles": numbers["poles"],
         "critical": _limits(figure, numbers["critical"], words),

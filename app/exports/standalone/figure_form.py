@@ -55,6 +55,7 @@ def setting_of(figure: FigureChoice, name: str, words: Words, place: str = "figu
         words,
         default=value_of(usual, name),
         mark=value_of(parameters, name),
+        guesses=figure.entry.guesses,
         options=figure.remade.get(name, page_values(figure, name, {}) if spec.options else ()),
     )
 

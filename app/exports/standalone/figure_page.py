@@ -13,6 +13,7 @@ from onpath.app.exports.standalone.figure_data import figure_data
 from onpath.app.exports.standalone.page_style import page_style
 from onpath.lessons.sides import law_label
 from onpath.lessons.words import Words
+from onpath.models.systems.guessed_numbers import guess_sentences
 
 POLICY = (
     "default-src 'none'; script-src {script}; style-src '{style}'; img-src {picture}; "
@@ -101,7 +102,7 @@ def _hint(figure: FigureChoice, words: Words, without: Sequence[str]) -> str:
     if without:
         parts = ", ".join(words(f"standalone.recorded_{part}") for part in without)
         said.append(words("standalone.recorded", parts=parts))
-    return " ".join(said)
+    return " ".join([*said, *guess_sentences(figure.entry.guesses, words.language)])
 
 
 def _hash(text: str) -> str:
