@@ -215,7 +215,7 @@ export class Column implements Robots {
         ;[...words.children].filter(each => !isOurs(each)).forEach((each, i) => {
             known.set(before[i]!, [...(known.get(before[i]!) ?? []), each as HTMLElement])
         })
-        const focused = document.activeElement, { scrollTop } = words
+        const focused = document.activeElement, { scrollTop } = words, form = words.querySelector<HTMLElement>(".form")
         const kept = parts.map(part => known.get(part.outerHTML)?.shift() ?? part)
         const gone = [...known.values()].flat()
         const at = gone.find(each => each.contains(focused))
@@ -227,6 +227,7 @@ export class Column implements Robots {
             if (next === each) next = next.nextElementSibling
             else words.insertBefore(each, next)
         }
+        if (form && !words.contains(form)) view?.offer(form)
         words.scrollTop = scrollTop // the browser has lost what it would keep in its place
         for (const each of kept) if (parts.includes(each) && each.dataset["block"]) view?.prepare(Number(each.dataset["block"]))
         const successor = at && kept.find(each => each.dataset["block"] === at.dataset["block"])

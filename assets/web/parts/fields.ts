@@ -199,6 +199,7 @@ class NumberRow extends FieldRow {
     private readonly toggle: HTMLInputElement | null = null
     private readonly marks = [made("i", "default"), made("i", "lesson")]
     private readonly track = made("span", "track", ...this.marks, this.slider)
+    private readonly draft = `field ${this.field.name}`
     private typing = false
     protected readonly inputs: HTMLElement[]
 
@@ -225,6 +226,23 @@ class NumberRow extends FieldRow {
         this.fill(...parts)
         this.listen()
         this.name()
+        queueMicrotask(() => this.resume()) // once it is on the page
+    }
+
+    /** Go on typing what was half typed when the page was loaded anew. */
+    private resume(): void {
+        const { box } = this, { text } = draftOf<{ text: string }>(this.draft) ?? {}
+        if (typeof text !== "string" || document.activeElement !== document.body) return
+        box.focus({ preventScroll: true })
+        if (document.activeElement !== box) return // it is hidden
+        box.value = text
+        this.typing = true
+    }
+
+    /** From now on the box has what is typed, or the value again. */
+    private type(on: boolean): void {
+        if (on || this.typing) keepDraft(this.draft, on ? { text: this.box.value } : null)
+        this.typing = on
     }
 
     /** The value as a number of what is shown, and back. */
@@ -293,7 +311,7 @@ class NumberRow extends FieldRow {
         this.goesBack(slider)
         slider.addEventListener("keydown", event => this.key(event), { signal })
         box.addEventListener("keydown", event => this.typed(event), { signal })
-        box.addEventListener("input", () => ((this.typing = true), this.touched()), { signal })
+        box.addEventListener("input", () => (this.type(true), this.touched()), { signal })
         box.addEventListener("focus", () => box.select(), { signal })
         box.addEventListener("blur", () => this.typing && !this.commit() && this.undo(), { signal })
     }
@@ -315,7 +333,7 @@ class NumberRow extends FieldRow {
         if (event.key === "Enter") this.commit()
         else if (event.key === "Escape" && (this.typing || this.refused)) this.undo()
         else if (by) {
-            this.typing = false
+            this.type(false)
             this.pick(this.scale.moved(this.inUnits(this.value ?? 0), by))
         } else return
         event.preventDefault()
@@ -333,14 +351,14 @@ class NumberRow extends FieldRow {
             this.form.changed()
             return false
         }
-        this.typing = false
+        this.type(false)
         if (typed === this.scale.shown(this.inUnits(this.value ?? 0))) this.undo() // nothing else was typed than what stood there
         else this.choose(value)
         return true
     }
 
     private undo(): void {
-        this.typing = false
+        this.type(false)
         this.refused = ""
         this.form.changed()
         this.update()

@@ -27,7 +27,7 @@ export class Search {
     constructor(private readonly texts: Texts, private readonly entries: () => Entry[]) {
         const { input, list, none } = this
         this.sheet = new SheetDialog(texts, "search", said(texts, "search.title"))
-        Object.assign(input, { type: "search", autocomplete: "off", spellcheck: false, ariaLabel: said(texts, "search.title") })
+        Object.assign(input, { type: "text", autocomplete: "off", enterKeyHint: "search", spellcheck: false, ariaLabel: said(texts, "search.title") })
         input.placeholder = said(texts, "search.hint")
         const told = { role: "combobox", "aria-expanded": "true", "aria-controls": "op-results", "aria-autocomplete": "list" }
         for (const [name, value] of Object.entries(told)) input.setAttribute(name, value)

@@ -65,6 +65,18 @@ test("a button that is replaced by its successor keeps the focus", () => {
     assert.equal(document.activeElement?.textContent, "Hint 2")
 })
 
+test("settings in a part that is replaced are in its successor before one reads on", () => {
+    const { column, hear } = opened(), form = document.createElement("div")
+    form.className = "form"
+    const task = (hint: string) => part(0, `<p>Hold both.</p>${hint}<ul class="verdicts"></ul>`)
+    const steps = [{ kind: "task", optional: false, running: true, script: null, figure: -1, values: { lengths: [], paths: [] }, blocks: [{ kind: "task", limits: [], checks: [], ways: [] }] }]
+    const told = (hint: string) => hear({ sections: { "0": `<h2>One</h2>${task(hint)}` }, steps } as unknown as Partial<LessonMessage>)
+    told("")
+    column.offer(form)
+    told("<p>The hint.</p>")
+    assert.equal(words().querySelector("[data-block] > p + .form + p")?.textContent, "The hint.")
+})
+
 test("a button sends what stands in it, and keys turn pages unless they are typed", () => {
     const { sent, hear } = opened()
     hear()

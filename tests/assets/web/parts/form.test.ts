@@ -1,7 +1,8 @@
 import { found, press, TEXTS } from "../page"
 import { pass, time } from "../clock"
 import assert from "node:assert/strict"
-import { test } from "node:test"
+import { afterEach, test } from "node:test"
+import { setImmediate as turn } from "node:timers/promises"
 import type { SetField } from "../../../../assets/web/channel/messages"
 import { RemoteSettings } from "../../../../assets/web/channel/settings"
 import type { FormField, FormMessage, ValuesMessage } from "../../../../assets/web/core/form_data"
@@ -26,6 +27,8 @@ const FORM: FormMessage = {
     ],
 }
 const BEGIN: Record<string, Value> = { K1: 400, speed: 3, limit: 0, cut: "slow", turned: 0, large: false, law: "" }
+
+afterEach(() => sessionStorage.clear())
 
 /** A form of settings that are here at once. */
 function opened(data = FORM, refused: Record<string, string> = {}) {
@@ -81,6 +84,24 @@ test("a typed number counts with Enter, and Escape forgets it", () => {
     type(field, "7")
     press(field, "Escape")
     assert.deepEqual([values["speed"], field.value], [-4.5, "−4.5"])
+})
+
+test("half a number is there with the focus after a reload, and counts or is forgotten as before", async () => {
+    for (const [key, value] of [["Enter", 5.5], ["Escape", 3]] as const) {
+        const first = opened()
+        type(box(first.row("speed")), "5.5")
+        const { row, values } = opened()
+        await turn() // it is on the page
+        const field = box(row("speed"))
+        assert.ok(document.activeElement === field)
+        assert.deepEqual([field.value, values["speed"]], ["5.5", 3])
+        press(field, key)
+        assert.equal(values["speed"], value)
+        assert.equal(sessionStorage.length, 0)
+        const again = opened()
+        await turn()
+        assert.ok(document.activeElement === document.body && box(again.row("speed")).value === "3")
+    }
 })
 
 test("what is no number, or too large, is refused beside its field, and said", () => {
