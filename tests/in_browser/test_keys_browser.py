@@ -16,7 +16,6 @@ from viser import _messages
 from onpath.app.lab import commands as c
 from onpath.app.server.lab_server import LabServer
 from onpath.app.view.keys import KEYS
-from onpath.models.control.settable import specs
 from tests.support.browser import Tab, wait_for
 
 pytestmark = pytest.mark.thorough
@@ -101,14 +100,10 @@ def settled_camera(tab: Tab) -> np.ndarray:
 # The camera.
 
 
-@pytest.mark.parametrize("place", ["tab", "read"])
-def test_no_key_of_lab_or_lesson_moves_the_camera(
-    request: pytest.FixtureRequest, place: str
-) -> None:
+def test_no_key_of_lab_or_lesson_moves_the_camera(read: Tab) -> None:
     """Keys that could move it in opposite directions are not held down together."""
-    tab: Tab = request.getfixturevalue(place)
     for opposite in (False, True):
-        keys_do_not_move_the_camera(tab, opposite)
+        keys_do_not_move_the_camera(read, opposite)
 
 
 def keys_do_not_move_the_camera(tab: Tab, opposite: bool) -> None:
@@ -160,45 +155,7 @@ def test_the_view_is_reset_by_a_key_and_by_a_button(tab: Tab) -> None:
     assert tab.lab.asked == asked  # nobody else who looks at this lab notices
 
 
-def test_the_view_is_reset_on_a_phone(browser: Browser, server: LabServer) -> None:
-    with opened(browser, server, "lesson", **TOUCH) as tab:
-        placed = settled_camera(tab)
-        turn_the_view(tab)
-        tab.open("View")
-        tab.button("Reset view").click()
-        wait_for(lambda: np.allclose(camera(tab), placed, atol=1e-4))
-
-
 # The focused control.
-
-
-def test_arrows_on_a_slider_move_that_alone(tab: Tab) -> None:
-    lab, before = tab.lab, tab.lab.asked
-    value, spec = lab.simulation.parameters.K1, specs(lab.simulation.parameters)["K1"]
-    steps = [("ArrowRight", value + spec.step), ("ArrowLeft", value), ("Home", spec.low)]
-    tab.focus(tab.slider("K1"))
-    for key, wanted in steps:
-        tab.page.keyboard.press(key)
-        wait_for(lambda wanted=wanted: wanted == lab.simulation.parameters.K1)
-    assert asked_since(tab, before) == 3 and tab.simulation.running
-
-
-def test_keys_move_the_handle_that_looks_back(tab: Tab) -> None:
-    lab = tab.lab
-    tab.ask(c.SetRunning(False))
-    tab.elapse(3.0)
-    handle, time = tab.page.get_by_role("slider", name="Look back"), lab.simulation.time
-    tab.focus(handle)
-    for key, ago in {"PageDown": 1.0, "ArrowLeft": 1.1, "ArrowRight": 1.0}.items():
-        tab.page.keyboard.press(key)
-        wait_for(
-            lambda ago=ago: (
-                ago - 0.01 < time - (lab.simulation.viewing or time) < ago + 0.1  # at a sample
-            )
-        )
-    assert lab.simulation.time == time and not lab.simulation.running
-    tab.page.keyboard.press("End")
-    wait_for(lambda: lab.simulation.viewing is None)
 
 
 def test_a_focused_button_is_pressed_and_nothing_else(tab: Tab) -> None:
@@ -208,29 +165,6 @@ def test_a_focused_button_is_pressed_and_nothing_else(tab: Tab) -> None:
         tab.page.keyboard.press(key)
         wait_for(lambda held=held: bool(tab.simulation.forces.held) is not held)
         assert asked_since(tab, before) == 1 and tab.simulation.running
-
-
-def test_letters_still_work_on_buttons_sliders_and_switches(tab: Tab) -> None:
-    """Also those of keyboards with another alphabet."""
-    lab, keyboard = tab.lab, tab.page.keyboard
-    typist = tab.page.context.new_cdp_session(tab.page)
-    slider, switch = tab.slider("K1"), tab.switch("Copy to both")
-    for control in (None, slider, switch):
-        if control is not None:
-            tab.row("K1" if control is slider else "Copy to both")  # opens its group
-            tab.focus(control)
-        held = bool(lab.simulation.forces.held)
-        keyboard.press("h")
-        wait_for(lambda held=held: bool(lab.simulation.forces.held) is not held)
-        keyboard.press("d")
-        wait_for(lambda: lab.simulation.forces.hands)
-        keyboard.press("x")
-        wait_for(lambda: not lab.simulation.forces.hands)
-        for hold in ("р", "η", "ي", "ㅗ"):
-            held = bool(lab.simulation.forces.held)
-            for kind in ("keyDown", "keyUp"):
-                typist.send("Input.dispatchKeyEvent", {"type": kind, "key": hold, "code": "KeyH"})
-            wait_for(lambda held=held: bool(lab.simulation.forces.held) is not held)
 
 
 def test_what_is_typed_into_a_field_does_nothing_else(tab: Tab) -> None:
@@ -248,26 +182,3 @@ def test_what_is_typed_into_a_field_does_nothing_else(tab: Tab) -> None:
     tab.page.keyboard.press("Escape")
     tab.page.get_by_role("dialog").wait_for(state="detached")
     assert asked_since(tab, before) == 0 and lab.simulation.running
-
-
-def test_going_on_is_reported_and_undone_by_key_and_button(tab: Tab) -> None:
-    lab = tab.lab
-    wait_for(lambda: lab.simulation.time > 1.5)
-    tab.page.keyboard.press("b")
-    wait_for(lambda: lab.simulation.viewing is not None)
-    time = lab.simulation.time
-    wait_for(lambda: "This is the past" in tab.said())
-    tab.page.keyboard.press("Space")
-    wait_for(lambda: lab.simulation.running and lab.simulation.time > time)  # back at the present
-    tab.page.keyboard.press("b")
-    wait_for(lambda: lab.simulation.viewing is not None)
-    end = lab.simulation.time
-    tab.press("Go on from here")
-    wait_for(lambda: "are discarded" in tab.said())
-    tab.press("Restore what was discarded")
-    wait_for(lambda: lab.simulation.time == end and not lab.simulation.running)
-    tab.settle()  # the button that was pressed may be drawn anew
-    tab.page.keyboard.press("u")
-    wait_for(lambda: lab.simulation.time != end)
-    tab.page.keyboard.press("u")
-    wait_for(lambda: lab.simulation.time == end)

@@ -142,14 +142,6 @@ def test_the_mouse_looks_back_and_the_lab_goes_along(tab: Tab) -> None:
     tab.button("Go on from here").wait_for(state="hidden")
 
 
-def test_the_strip_speaks_the_language_of_the_page(tab: Tab) -> None:
-    tab.ask(c.SetLanguage("de"))
-    expect(tab.page.get_by_role("button", name="Beide festhalten")).to_be_visible()
-    expect(tab.page.get_by_role("img", name="Abstand von der Bahn [mm]")).to_be_visible()
-    tab.ask(c.SetLanguage("en"))
-    expect(tab.page.get_by_role("button", name="Hold both back")).to_be_visible()
-
-
 def test_a_lesson_is_read_beside_the_robots_and_above_the_strip(tab: Tab) -> None:
     strip, column = tab.page.locator("#op-strip"), tab.page.locator("#op-column")
     expect(strip).to_be_visible()

@@ -11,8 +11,6 @@ pytest.importorskip("playwright")
 from playwright.sync_api import Browser, expect
 
 from onpath.app.lab import commands as c
-from onpath.app.lab.setups.setup import Setup
-from onpath.app.lab.setups.share_code import encode
 from onpath.app.server.lab_server import LabServer
 from onpath.models.control.laws.own import PATH_FOLLOWING, VIEW
 from onpath.models.control.laws.registry import LAWS
@@ -104,14 +102,3 @@ def test_an_own_law_is_typed_and_a_typo_changes_nothing(tab: Tab) -> None:
     tab.choose("Law, right", "Path following")
     expect(box).to_have_count(0)
     wait_for(lambda: simulation.laws == DEFAULT_LAWS)
-
-
-def test_a_law_that_is_typed_elsewhere_is_shown_in_its_box(tab: Tab) -> None:
-    law = "across = -K1*xi - K2*dxi; along = 1 - dtheta"
-    tab.ask(c.UseShared(encode(Setup(laws={LEFT: law}))))
-    box = tab.page.get_by_role("textbox", name="Own law, left", exact=True)
-    expect(box).to_have_value(law.replace("; ", "\n"))
-    chosen = tab.row("Law, left").locator("option:checked")
-    expect(chosen).to_have_text("Own law…")
-    wait_for(lambda: tab.simulation.laws[LEFT] == law)
-    assert tab.lab.refused == {}

@@ -49,18 +49,13 @@ def beside(tab: Tab) -> list[tuple[float, float]]:
     return [(x - 90, y - 70), (x - 190, y - 120)]
 
 
-@pytest.mark.parametrize("how", ["mouse", "finger"])
-def test_a_miss_does_not_tilt_the_view(tab: Tab, how: str) -> None:
+def test_a_miss_does_not_tilt_the_view_and_the_right_button_turns_it(tab: Tab) -> None:
     before = view(tab)
-    drag = tab.dragging if how == "mouse" else tab.touching
-    with drag(*beside(tab), in_scene=False):
-        tab.answer()
-    assert np.allclose(view(tab), before)
-    assert not tab.simulation.forces.hands
-
-
-def test_the_right_button_turns_the_view(tab: Tab) -> None:
-    before = view(tab)
+    for drag in (tab.dragging, tab.touching):
+        with drag(*beside(tab), in_scene=False):
+            tab.answer()
+        assert np.allclose(view(tab), before)
+        assert not tab.simulation.forces.hands
     start, end = beside(tab)
     tab.page.mouse.move(*start)
     tab.page.mouse.down(button="right")

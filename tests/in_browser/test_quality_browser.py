@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import contextmanager
 
 import pytest
 
@@ -42,13 +43,8 @@ RENDERERS = {
 }
 
 
-@pytest.fixture(params=[*RENDERERS, ""])
-def renderer(request: pytest.FixtureRequest) -> str:
-    return str(request.param)
-
-
-@pytest.fixture
-def tab(browser: Browser, server: LabServer, renderer: str) -> Iterator[Tab]:
+@contextmanager
+def opened(browser: Browser, server: LabServer, renderer: str) -> Iterator[Tab]:
     context = browser.new_context()
     context.add_init_script(SCENES)
     if renderer:
@@ -59,8 +55,15 @@ def tab(browser: Browser, server: LabServer, renderer: str) -> Iterator[Tab]:
     context.close()
 
 
-def test_the_scene_is_as_fine_as_the_browser_can_draw_it(tab: Tab, renderer: str) -> None:
-    is_plain = RENDERERS.get(renderer, True)  # that of the tests draws in software
+def test_the_scene_is_as_fine_as_the_browser_can_draw_it(
+    browser: Browser, server: LabServer
+) -> None:
+    for renderer in (*RENDERERS, ""):
+        with opened(browser, server, renderer) as tab:
+            is_as_fine(tab, RENDERERS.get(renderer, True))  # that of the tests draws in software
+
+
+def is_as_fine(tab: Tab, is_plain: bool) -> None:
     assert isinstance(tab.display, LabFeed)
     assert tab.display.scene is not None
     assert tab.display.scene._scene.stage.plain == is_plain

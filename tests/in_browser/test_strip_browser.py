@@ -157,44 +157,6 @@ def test_the_handle_is_dragged(page: Page) -> None:
     assert page.evaluate("onpath.engine.state.past") is None
 
 
-def test_back_to_now_goes_on_as_before(page: Page) -> None:
-    page.evaluate("onpath.advance(3000)")
-    page.get_by_role("button", name=ENGLISH("run.run"), exact=True).click()
-    handle(page).press("PageDown")
-    assert page.get_by_role("button", name=ENGLISH("run.run"), exact=True).is_visible()
-    page.get_by_role("button", name=ENGLISH("transport.back")).click()
-    before = page.evaluate("onpath.simulation.time")
-    wait_for(lambda: page.evaluate("onpath.simulation.time") > before, WAIT)
-
-
-def test_hold_is_one_button_for_short_and_long_presses(page: Page) -> None:
-    """Pressed it holds, and pressed again it lets go; kept pressed, it lets go in the end."""
-    button = page.get_by_role("button", name=ENGLISH("run.hold_both"))
-    button.click()
-    assert page.evaluate("onpath.simulation.held")
-    page.get_by_role("button", name=ENGLISH("run.let_both_go")).click()
-    assert not page.evaluate("onpath.simulation.held")
-    box = button.bounding_box()
-    assert box
-    page.mouse.move(box["x"] + 9, box["y"] + 9)
-    page.mouse.down()
-    page.wait_for_timeout(1000)  # a long press is one by the clock
-    assert page.evaluate("onpath.simulation.held")
-    page.mouse.move(5, 5)
-    page.mouse.up()
-    assert not page.evaluate("onpath.simulation.held")
-    button.focus()
-    page.keyboard.press("Enter")
-    assert page.evaluate("onpath.simulation.held")
-    page.keyboard.press(" ")
-    assert not page.evaluate("onpath.simulation.held")
-    page.keyboard.down(" ")
-    page.wait_for_timeout(1000)
-    assert page.evaluate("onpath.simulation.held")
-    page.keyboard.up(" ")
-    assert not page.evaluate("onpath.simulation.held")
-
-
 def test_buttons_keep_their_places_whatever_they_say(page: Page) -> None:
     places = """() => [...document.querySelectorAll(".transport :is(button, select)")]
         .map(each => each.getBoundingClientRect().toJSON()).filter(each => each.width)"""

@@ -256,28 +256,6 @@ def is_drawn(way: Array, pixels: Array) -> bool:
     return len(way) == len(pixels) and bool(np.linalg.norm(way - pixels, axis=1).max() < NEAR)
 
 
-def test_a_symbol_is_lit_by_pointing_and_by_keys(tab: Tab) -> None:
-    page = tab.page
-    sign = page.locator(".step.open .words [data-symbol=lambda]:visible").first
-    sign.wait_for()
-    assert page.evaluate(DRAWN) == []
-    before = page.evaluate(IN_LENSES)
-    sign.hover()
-    seen = np.concatenate(wait_for(lambda: page.evaluate(DRAWN)))
-    for side in tab.simulation.runs:
-        tip = tab.placed(side, tab.tip(side))
-        assert np.linalg.norm(seen - tip, axis=1).min() < 25, side
-    wait_for(lambda: all(a != b for a, b in zip(before, page.evaluate(IN_LENSES), strict=True)))
-    page.mouse.move(2, 2)
-    wait_for(lambda: page.evaluate(DRAWN) == [])
-    page.locator(".step.open .symbols summary").focus()
-    page.keyboard.press("Enter")
-    page.keyboard.press("Tab")
-    wait_for(lambda: page.evaluate(DRAWN))
-    tab.ask(c.GoToStep(1))
-    wait_for(lambda: page.evaluate(DRAWN) == [])
-
-
 @DESK
 def test_the_slider_of_a_gain_is_lit_if_the_step_has_it(tab: Tab) -> None:
     for number in range(1, 6):

@@ -16,7 +16,7 @@ from playwright.sync_api import Browser, expect
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
 from onpath.app.server.lab_server import LabServer
-from tests.support.browser import WAIT, Tab, wait_for
+from tests.support.browser import WAIT, Tab
 
 pytestmark = pytest.mark.thorough
 
@@ -117,39 +117,3 @@ def test_every_step_of_a_lesson_is_whole(tab: Tab) -> None:
         tab.page.get_by_role("heading", name=lesson.steps[index].title, exact=True).wait_for()
         tab.wait_until_built()
         is_whole(tab)
-
-
-def test_the_lab_is_held_from_beside_the_text(tab: Tab) -> None:
-    tab.ask(TakeStep(LESSON, 6))
-    tab.page.get_by_role("heading", name="Hold it yourself").wait_for()
-    tab.button("Hold both back").click()
-    wait_for(lambda: tab.simulation.forces.held)
-    expect(tab.page.get_by_role("heading", name="Hold it yourself")).to_be_in_viewport()
-    expect(tab.button("Next")).to_be_in_viewport(ratio=0.99)
-    assert tab._canvas()["width"] > 0.5 * 640
-    tab.ask(c.Hold(False))
-
-
-def test_a_step_s_controls_are_beside_its_text_and_the_robots_keep_their_room(tab: Tab) -> None:
-    tab.ask(TakeStep(LESSON, 0), TakeStep(LESSON, 6))
-    heading = tab.page.get_by_role("heading", name="Hold it yourself")
-    expect(heading).to_be_in_viewport()
-    tab.wait_until_built()
-    slider = tab.slider("K1")
-    slider.scroll_into_view_if_needed()
-    expect(slider).to_be_in_viewport()
-    expect(tab.button("Hold both back")).to_be_in_viewport(ratio=0.99)
-    wait_for(lambda: tab._canvas()["width"] > 0.5 * 640)
-    expect(tab.button("Next")).to_be_in_viewport(ratio=0.99)
-
-
-def test_a_board_is_large_enough_to_draw_on_beside_its_question(tab: Tab) -> None:
-    tab.ask(TakeStep(LESSON, 0), TakeStep(LESSON, 1))
-    tab.page.get_by_role("heading", name="Draw what the tracker does").wait_for()
-    tab.wait_until_built()
-    for each in (tab.button("Commit to this prediction"), tab.button("Skip the prediction")):
-        expect(each).to_be_in_viewport(ratio=0.99)
-    expect(tab.page.locator(".asked.sketch .question")).to_be_in_viewport()
-    box = tab.page.locator(".board").bounding_box()
-    assert box is not None and box["height"] > 120 and box["width"] > 250
-    assert box["y"] + box["height"] <= 400

@@ -213,3 +213,10 @@ def test_a_pdf_without_a_browser_is_refused_with_a_way_out(
     pdf = tmp_path / "g.pdf"
     assert run_command(["lessons", "guide", "--pdf", str(pdf), "--lessons", str(tmp_path)]) == 2
     assert "--html" in capsys.readouterr().err and not pdf.exists()
+
+
+@pytest.mark.thorough
+def test_a_guide_without_formulas_has_no_font() -> None:
+    course, _ = built_in_course()
+    text = guide(course, BUILT_IN, ["01-path-or-timetable"], ENGLISH)
+    assert ("font-src" in text) == ("<math" in text) == ("STIX" in text)
