@@ -40,7 +40,7 @@ def tab(browser: Browser, server: LabServer) -> Iterator[Tab]:
 
 def choose_robot(tab: Tab, robot: str) -> None:
     """Choose a robot from all of them."""
-    tab.page.locator("#op-panel [data-name=robot] button").click()
+    tab.page.locator("#op-panel [data-name=robot] button.do").click()
     tab.card(robot).click()
     tab.wait_until_built()
 

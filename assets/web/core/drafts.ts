@@ -24,8 +24,11 @@ export function keepDraft(name: string, draft: object | null): void {
  * @param of what it shows: elsewhere it begins at the top */
 export function keepScroll(element: HTMLElement, name: string, of = ""): void {
     const draft = draftOf<{ of: string; top: number }>(name)
-    element.scrollTop = draft?.of === of ? Number(draft.top) || 0 : 0
-    element.addEventListener("scroll", () => keepDraft(name, { of, top: element.scrollTop }), { passive: true })
+    const keep = (top: number) => keepDraft(name, { of, top })
+    const top = draft?.of === of ? Number(draft.top) || 0 : 0
+    element.scrollTop = top
+    keep(top) // what was read before this begins at its top again
+    element.addEventListener("scroll", () => keep(element.scrollTop), { passive: true })
 }
 
 function entryOf(name: string): string {

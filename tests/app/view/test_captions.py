@@ -93,6 +93,20 @@ def test_a_pull_is_said_and_ends(side: str) -> None:
     assert not seen(lab, captions, 3.0)[side]
 
 
+def test_a_newcomer_is_told_of_a_pull_but_not_of_integral_action() -> None:
+    lab, captions, brief = new_lab(1.0), Captions(ENGLISH), Captions(ENGLISH)
+    brief.brief = True
+    do(lab, *[c.MoveHand(0.0, 0.02)] * 4)
+    told = set[bool]()
+    for _ in range(20):
+        run(lab, 0.1)
+        shown = take_page_snapshot(lab, 1.0)
+        whole, first = captions.follow(shown)[FOLLOWER], brief.follow(shown)[FOLLOWER]
+        assert first == whole.partition(", its integral")[0]
+        told.add(first != whole)
+    assert told == {False, True}
+
+
 def test_the_end_of_an_open_path_is_said_and_not_that_of_a_closed_one() -> None:
     lab, captions = new_lab(1.0), Captions(ENGLISH)
     do(lab, c.ChoosePath("segment"))
