@@ -72,7 +72,8 @@ def setting_label(name: str, parameters: Parameters, words: Words) -> str:
         return words(f"side.{name}")
     if name in OTHERS:
         return words(OTHERS[name])
-    declared = (lab_specs(each) for each in (parameters, *(e.parameters for e in ROBOTS.values())))
+    others = [entry.parameters for entry in tuple(ROBOTS.values())]
+    declared = (lab_specs(each) for each in (parameters, *others))
     return parameter_label(name, next(each[name] for each in declared if name in each), words)
 
 

@@ -47,6 +47,19 @@ class EnterLab(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", 
     code: Typed
 
 
+class ChooseTip(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="choose_tip"):
+    """Have the robot of a file with another of the tips that the file suggests.
+
+    It may have to be built first; the lab says how far that is, and why if it fails.
+
+    Attributes:
+        robot: the name of a robot of the file.
+    """
+
+    robot: Typed
+    tip: Annotated[str, Meta(max_length=2000)]
+
+
 class CompareLaws(
     Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="compare_laws"
 ):
@@ -84,7 +97,17 @@ class Teach(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag
 SeatRequest = JoinClass | LeaveClass | Teach
 """What changes the lab's place in the class."""
 
-Request = Ask | Freehand | Prefer | ResetView | AskSummary | EnterLab | CompareLaws | SeatRequest
+Request = (
+    Ask
+    | Freehand
+    | Prefer
+    | ResetView
+    | AskSummary
+    | EnterLab
+    | ChooseTip
+    | CompareLaws
+    | SeatRequest
+)
 """What the page asks of its server, without a change of the lab."""
 
 
@@ -101,6 +124,9 @@ class RobotCard(Struct, frozen=True, kw_only=True):
         differs: what is special about it, in a few words.
         text: what it is, in a sentence or two.
         picture: a data URI.
+        tip: the end-point of a robot from a file that suggests several.
+        is_built: whether it is in the catalogue; else the name is that of the robot with another
+            tip.
     """
 
     name: str
@@ -108,6 +134,8 @@ class RobotCard(Struct, frozen=True, kw_only=True):
     differs: str
     text: str
     picture: str
+    tip: str = ""
+    is_built: bool = True
 
 
 class RobotSheet(Struct, frozen=True, kw_only=True, tag_field="is", tag="robots"):

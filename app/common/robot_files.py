@@ -1,17 +1,55 @@
-"""Adds robots from files to the catalogue, and gives their arguments on a command line."""
+"""Robots from files: adds them to the catalogue, and knows from which file each one is."""
 
 from __future__ import annotations
 
+import shlex
+from dataclasses import dataclass, replace
 from pathlib import Path
 
+from onpath.app.common.announced import announced
 from onpath.models.errors import Message
 from onpath.models.systems.catalogue import add_robot
+from onpath.models.systems.chain_robot import chain_entry
 from onpath.models.systems.file_chain import Options
 from onpath.models.systems.guessed_numbers import told_guess
+from onpath.models.systems.rigid_chain import ChainSource
 from onpath.models.systems.robot_file import read_robot
 from onpath.models.systems.robots import RobotEntry
 
-_FILES = dict[str, tuple[Path, Options]]()  # by name
+
+@dataclass(frozen=True, slots=True, eq=False)
+class GivenFile:
+    """A robot's file, as it was given.
+
+    Attributes:
+        tips: that the file suggests, the best first.
+        tip: of the robot.
+    """
+
+    file: Path
+    options: Options
+    tips: tuple[str, ...]
+    tip: str
+
+    def with_tip(self, tip: str) -> GivenFile:
+        """The same file with another one of its tips."""
+        return replace(self, options=replace(self.options, tip=tip), tip=tip)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ReadFile:
+    """What has been read from a file: plain data, which another process may have read.
+
+    Attributes:
+        remarks: for the user, each once.
+    """
+
+    source: ChainSource
+    given: GivenFile
+    remarks: tuple[Message, ...]
+
+
+_FILES = dict[str, GivenFile]()  # by name of the robot
 
 
 def robot_of_file(file: Path, options: Options) -> tuple[RobotEntry, tuple[Message, ...]]:
@@ -22,19 +60,63 @@ def robot_of_file(file: Path, options: Options) -> tuple[RobotEntry, tuple[Messa
     Raises:
         ValueError: see `read_robot`.
     """
+    with announced(f"OnPath: reading {file.name} …"):
+        read = read_file(file, options)
+        return add_read(read), read.remarks
+
+
+def read_file(file: Path, options: Options) -> ReadFile:
+    """Read a robot's file, without a change of the catalogue.
+
+    Raises:
+        ValueError: see `read_robot`.
+    """
     read = read_robot(file, options)
-    entry = add_robot(read.entry)
-    _FILES[entry.name] = file.resolve(), options
+    source = read.entry.source
+    assert source is not None
     guesses = (told_guess(guess) for guess in read.guesses if guess.kind != "pose")
-    return entry, tuple({str(remark): remark for remark in (*read.remarks, *guesses)}.values())
+    remarks = {str(remark): remark for remark in (*read.remarks, *guesses)}
+    given = GivenFile(
+        file=file.resolve(),
+        options=options,
+        tips=read.tips,
+        tip=options.tip or next(iter(read.tips), ""),
+    )
+    return ReadFile(source, given, tuple(remarks.values()))
+
+
+def add_read(read: ReadFile) -> RobotEntry:
+    """Add the robot that has been read to the catalogue."""
+    entry = add_robot(chain_entry(read.source))
+    _FILES[entry.name] = read.given
+    return entry
+
+
+def given_file(robot: str) -> GivenFile | None:
+    """The file of a robot in the catalogue; None if it is not from a file that was given."""
+    return _FILES.get(robot)
+
+
+def built_with(given: GivenFile) -> str:
+    """The name of the robot in the catalogue that is from the same file, with this tip; or ""."""
+    for name, other in _FILES.items():
+        if other.file == given.file and other.tip == given.tip:
+            return name
+    return ""
+
+
+def to_type(file: str, tip: str) -> str:
+    """What starts the lab with a file and its tip, as one types it."""
+    given = ["onpath", "--robot", file] if file else ["onpath", "--robot", "FILE"]
+    return shlex.join(given + (["--tip", tip] if tip else []))
 
 
 def robot_arguments(robot: str) -> list[str]:
     """`--robot` as the command line takes it: a name, or a file with its options."""
     if robot not in _FILES:
         return ["--robot", robot]
-    file, options = _FILES[robot]
-    given = ["--robot", str(file)]
+    options = _FILES[robot].options
+    given = ["--robot", str(_FILES[robot].file)]
     given += ["--tip", options.tip] if options.tip else []
     for option, pairs in (
         ("--pose", options.pose),
@@ -43,7 +125,10 @@ def robot_arguments(robot: str) -> list[str]:
     ):
         for name, value in pairs.items():
             given += [option, f"{name}={value}"]
-    given += ["--armature", str(options.armature)] if options.armature else []
-    for option, number in (("--density", options.density), ("--mass", options.mass)):
+    for option, number in (
+        ("--armature", options.armature or None),
+        ("--density", options.density),
+        ("--mass", options.mass),
+    ):
         given += [] if number is None else [option, str(number)]
     return given

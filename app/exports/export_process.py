@@ -48,6 +48,7 @@ class ExportProcess:
         self._idle = idle
         self._process: subprocess.Popen[bytes] | None = None
         self._added = list[tuple[Callable[[Any], None], Any]]()
+        self._chains = 0  # robots from files that the process knows
         self._calls, self._stops = threading.Lock(), 0
         self._rest: threading.Timer | None = None
 
@@ -89,6 +90,9 @@ class ExportProcess:
                 for add, added in self._added:  # the new process finds only our own
                     _ask(process, add, (added,))
                 self._added = []
+                if fresh := added_chains()[self._chains :]:
+                    _ask(process, add_chains, (fresh,))
+                    self._chains += len(fresh)
                 succeeded, result = _ask(process, work, arguments)
             except (EOFError, OSError, pickle.UnpicklingError) as error:
                 self._end()
@@ -116,8 +120,8 @@ class ExportProcess:
     def _started(self) -> subprocess.Popen[bytes]:
         if self._process is None or self._process.poll() is not None:
             self._end()
-            added = [(add_chains, added_chains()), (add_laws, laws_of_files())]
-            self._added = [(add, each) for add, each in added if each]
+            self._added = [(add_laws, laws)] if (laws := laws_of_files()) else []
+            self._chains = 0
             path = os.pathsep.join(filter(None, sys.path))
             self._process = subprocess.Popen(
                 [sys.executable, "-P", "-m", "onpath.app.exports.worker"],

@@ -39,6 +39,7 @@ from onpath.app.server.page_context import PageContext
 from onpath.app.server.page_data import PageData
 from onpath.app.server.page_text import PageText
 from onpath.app.server.robot_shapes import prepare_shapes
+from onpath.app.server.robot_tips import RobotTips, Tell
 from onpath.app.server.server_options import USUAL, ServerOptions
 from onpath.app.server.site_address import reachable_site, site_for_students
 from onpath.app.server.visit import Visit
@@ -125,6 +126,7 @@ class LabServer:
             self._store_labs(records)
         self._classes = ClassDirectory(options.classrooms, self._class_service)
         self._newcomers = BuildQueue()
+        self._tips = RobotTips(self.thread)
         set_initial_camera(server, stage_of(robot.make(robot.parameters())))
         self.visits.attend(server)
         self._start()
@@ -294,6 +296,8 @@ class LabServer:
             keep_days=self._options.retention.days if keeps else 0,
             enter=partial(self._enter, visit),
             text=text,
+            choose_tip=partial(self._tips.choose, post=lab.post),
+            remark=lambda text: lab.post(Tell(text)),
             seat=seat if teaching is None else None,
             look=visit.look,
             privacy_url=self._options.privacy_url,

@@ -35,7 +35,7 @@ def new_lab(
     """
     lab = Lab(loop_cache, robot, course)
     simulation = lab.simulation
-    for name, entry in ROBOTS.items():
+    for name, entry in tuple(ROBOTS.items()):
         simulation.earlier[name] = RobotSettings(with_values(entry.parameters(), NEWCOMER))
     simulation.set_parameters(simulation.earlier.pop(simulation.entry.name).parameters)
     if path is not None:

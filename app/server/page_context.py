@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import NoReturn
 
 from onpath.app.classroom.teaching.teacher_context import TeacherContext
 from onpath.app.common.presses import Presses
 from onpath.app.scene.client_scene import Look
 from onpath.app.server.page_text import PageText
 from onpath.lessons.course import Course
+from onpath.models.errors import CodedError
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +32,14 @@ class ClassSeat:
     code: str = ""
 
 
+def _no_tip(*_: str) -> NoReturn:
+    raise CodedError("robots.no_such_tip")
+
+
+def _unheard(text: str) -> None:
+    del text
+
+
 @dataclass(frozen=True, slots=True)
 class PageContext:
     """The context of one client's page.
@@ -40,6 +50,8 @@ class PageContext:
         keep_days: number of days without use after which the lab is deleted; 0 if it lasts only
             as long as the server.
         enter: opens the lab of a code; raises ValueError with a message.
+        choose_tip: gives the lab a robot of the server's file with another tip; raises ValueError.
+        remark: shows a text as the lab's message.
         seat: the lab's place in the class, or None without a class.
         look: how the scene is to be drawn.
         privacy_url: the address of the site's privacy notice; empty if it has none.
@@ -54,6 +66,8 @@ class PageContext:
     keep_days: int
     enter: Callable[[str], None]
     text: PageText
+    choose_tip: Callable[[str, str], None] = _no_tip
+    remark: Callable[[str], None] = _unheard
     seat: ClassSeat | None = None
     look: Look = field(default_factory=Look)
     privacy_url: str = ""

@@ -10,6 +10,7 @@ from msgspec import Struct
 from onpath.app.channel.sheet_messages import (
     Ask,
     AskSummary,
+    ChooseTip,
     CompareLaws,
     EnterLab,
     Freehand,
@@ -79,6 +80,9 @@ class PageRequests:
             case EnterLab(code=code):
                 refuse = lambda why: tell(Told(of="keep", text=why))  # noqa: E731
                 self._press(lambda: self._context.enter(code), refuse, words)
+            case ChooseTip(robot=robot, tip=tip):
+                choose = self._context.choose_tip
+                self._press(lambda: choose(robot, tip), self._context.remark, words)
             case CompareLaws(laws=laws, obstruction=obstruction):
                 self._compare(laws, obstruction, snapshot, words, tell)
             case JoinClass() | LeaveClass() | Teach():

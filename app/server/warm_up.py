@@ -79,7 +79,7 @@ def warm_up(loop_cache: LoopCache, course: Course, rest: float = REST) -> Thread
 def build_robots(loop_cache: LoopCache) -> None:
     """Build the equations, checks and drawings of all robots, before somebody chooses one."""
     home = np.zeros((1, 2))
-    for entry in ROBOTS.values():
+    for entry in tuple(ROBOTS.values()):
         lab = Lab(loop_cache, entry)
         take_page_snapshot(lab, 1.0)
         robot = lab.simulation.robot

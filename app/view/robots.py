@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 import base64
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
+from pathlib import Path
+
+from msgspec import structs
 
 from onpath.app.channel.sheet_messages import RobotCard, RobotSheet
+from onpath.app.common.robot_files import built_with, given_file
 from onpath.app.view.robot_sketch import robot_sketch
 from onpath.assets import asset_path
 from onpath.lessons.labels import robot_label, robot_text
@@ -13,22 +18,45 @@ from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.guessed_numbers import guess_sentences
 from onpath.models.systems.robots import RobotEntry
+from onpath.models.systems.xml_elements import shown
 
 
 def robot_sheet(words: Words) -> RobotSheet:
-    """All robots of the catalogue, in its order."""
-    return RobotSheet(robots=[robot_card(entry, words) for entry in ROBOTS.values()])
+    """All robots of the catalogue, in its order, and those that their files suggest besides."""
+    cards = [robot_card(entry, words) for entry in tuple(ROBOTS.values())]
+    return RobotSheet(robots=[*cards, *_not_built(cards, words)])
+
+
+def _not_built(cards: Sequence[RobotCard], words: Words) -> Iterator[RobotCard]:
+    """The tips that files suggest and nobody has chosen yet."""
+    offered = set[tuple[Path, str]]()
+    for card in cards:
+        given = given_file(card.name)
+        for tip in () if given is None else given.tips:
+            key = given.file, tip
+            if key not in offered and not built_with(given.with_tip(tip)):
+                offered.add(key)
+                yield structs.replace(
+                    card,
+                    differs=words("robots.tip", tip=shown(tip)),
+                    text=words("robots.build"),
+                    tip=tip,
+                    is_built=False,
+                )
 
 
 def robot_card(entry: RobotEntry, words: Words) -> RobotCard:
     """A robot, and what is special about it; one from a file has only its text."""
-    text = robot_text(entry, words)
+    text, given = robot_text(entry, words), given_file(entry.name)
+    tip = "" if given is None or len(given.tips) < 2 else given.tip
+    text = words("robots.tip", tip=shown(tip)) if tip else text
     return RobotCard(
         name=entry.name,
         label=robot_label(entry.name, words),
         differs=words.get(f"robots.differs_{entry.name}", text),
         text=about_robot(entry, words),
         picture=picture_of(entry),
+        tip=tip,
     )
 
 

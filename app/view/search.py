@@ -28,7 +28,7 @@ def index(robot: Robot, course: Course, words: Words) -> Index:
 
 
 def _robots(words: Words) -> Iterator[Found]:
-    for entry in ROBOTS.values():
+    for entry in tuple(ROBOTS.values()):
         yield Found(
             kind="robot",
             label=robot_label(entry.name, words),

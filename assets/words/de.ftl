@@ -1972,3 +1972,13 @@ robot_file-empty_folder = { $folder } enthält keine Roboterdatei ({ $endings })
 robot_file-which_file = { $folder } enthält { $count } Roboterdateien. Bitte eine angeben: { $lines }
 robot_file-not_fetched = robot_descriptions kann { $name } nicht laden: { $reason }
 robot_file-no_description = { $name } aus robot_descriptions hat keine lesbare Datei
+
+## Endpunkte, die die Datei eines Roboters nahelegt
+
+robots-tip = Endpunkt { $tip }
+robots-build = Er wird gebaut, wenn man ihn wählt; das dauert einige Sekunden.
+robots-no_such_tip = keine Datei dieses Labors legt diesen Endpunkt nahe
+robots-reading = { $file } wird mit dem Endpunkt { $tip } gelesen …
+robots-shapes = Die Netze für den Endpunkt { $tip } werden gelesen …
+robots-not_built = { $file } mit dem Endpunkt { $tip }: { $reason }. Der Roboter bleibt, wie er war
+robots-not_read = sie konnte nicht gelesen werden ({ $reason })

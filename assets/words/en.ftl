@@ -1566,3 +1566,13 @@ robot_file-empty_folder = { $folder } has no robot's file ({ $endings })
 robot_file-which_file = { $folder } has { $count } robots' files. Name one: { $lines }
 robot_file-not_fetched = robot_descriptions cannot fetch { $name }: { $reason }
 robot_file-no_description = { $name } of robot_descriptions has no file that can be read
+
+## Tips that a robot's file suggests
+
+robots-tip = end-point { $tip }
+robots-build = It is built when you choose it, which takes some seconds.
+robots-no_such_tip = no file of this lab suggests that end-point
+robots-reading = Reading { $file } with the end-point { $tip } …
+robots-shapes = Reading the meshes for the end-point { $tip } …
+robots-not_built = { $file } with the end-point { $tip }: { $reason }. The robot stays as it was
+robots-not_read = it could not be read ({ $reason })

@@ -50,7 +50,8 @@ def robot_named(name: str) -> RobotEntry:
 def add_robot(entry: RobotEntry) -> RobotEntry:
     """Add a robot that is not a module of this folder, such as one from a file.
 
-    Call it before a server listens: pages and labs expect that the robots stay the same.
+    While a server runs, its simulation thread calls it: no lab changes then. Other threads that go
+    through the catalogue take a copy of it first.
 
     Returns:
         The entry, or the one added earlier from the same file and options, with what this one
@@ -102,7 +103,8 @@ copyreg.pickle(RobotEntry, _pickled)  # type: ignore[arg-type]
 
 def added_chains() -> list[ChainSource]:
     """The sources of the chains that have been added: plain data, for another process."""
-    return [entry.source for name, entry in ROBOTS.items() if name not in _FOUND and entry.source]
+    robots = tuple(ROBOTS.items())
+    return [entry.source for name, entry in robots if name not in _FOUND and entry.source]
 
 
 def add_chains(sources: list[ChainSource]) -> None:

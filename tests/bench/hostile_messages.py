@@ -126,6 +126,7 @@ ASKED: dict[str, dict[str, Any]] = {
     "view": {},
     "summary": {},
     "enter": {"code": "k7mf2xqa9tzr"},
+    "choose_tip": {"robot": "planar_arm", "tip": "tool0"},
     "compare_laws": {"laws": ["path_following"], "obstruction": "brake"},
     "join": {"code": "234567", "name": "Ada"},
     "leave": {},

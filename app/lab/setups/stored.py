@@ -61,7 +61,7 @@ def without_absent_laws(data: Any) -> tuple[Any, tuple[str, ...]]:
         stored = msgspec.convert(as_of_today(data), StoredSetup)
     except msgspec.ValidationError:
         return data, ()
-    known = {name for entry in ROBOTS.values() for name in specs(entry.parameters)}
+    known = {name for entry in tuple(ROBOTS.values()) for name in specs(entry.parameters)}
     known |= FORMER_NAMES.keys()
     gains = {n for robot in stored.robots.values() for n in robot.parameters if n not in known}
     chosen = stored.laws.items()

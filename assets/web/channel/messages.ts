@@ -232,6 +232,16 @@ export interface EnterLab {
     code: string
 }
 
+/** Have the robot of a file with another of the tips that the file suggests.
+ *
+ * It may have to be built first; the lab says how far that is, and why if it fails. */
+export interface ChooseTip {
+    is: "choose_tip"
+    /** the name of a robot of the file. */
+    robot: string
+    tip: string
+}
+
 /** Compare laws under an obstruction; `Compared` tells the results, and `Told` why not. */
 export interface CompareLaws {
     is: "compare_laws"
@@ -340,6 +350,7 @@ export type PageMessage =
     | ResetView
     | AskSummary
     | EnterLab
+    | ChooseTip
     | CompareLaws
     | JoinClass
     | LeaveClass
@@ -617,6 +628,10 @@ export interface RobotCard {
     text: string
     /** a data URI. */
     picture: string
+    /** the end-point of a robot from a file that suggests several. */
+    tip: string
+    /** whether it is in the catalogue; else the name is that of the robot with another tip. */
+    is_built: boolean
 }
 
 /** All robots. */

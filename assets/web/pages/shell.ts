@@ -81,7 +81,7 @@ export class Shell {
         const { engine, texts } = this, lab = engine.lab!
         const send = (message: Message) => engine.send(message)
         const opens: Record<Opens, () => Promise<SheetDialog>> = {
-            robots: async () => chooseRobot(texts, await engine.ask("robots"), lab.robot, robot => send({ do: "ChooseRobot", name: robot })),
+            robots: async () => chooseRobot(texts, await engine.ask("robots"), lab.robot, send),
             laws: async () => aboutLaws(texts, await engine.ask("laws"), lab.laws),
             lessons: async () => chooseLesson(texts, await engine.ask("lessons"), send),
             help: async () => help(texts, await engine.ask("help"), this.keys.known, () => pointAtStage(texts, engine)),

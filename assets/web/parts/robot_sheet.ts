@@ -1,23 +1,25 @@
 // The robots to choose from: a grid of pictures, with the arrow keys and Enter.
 
-import type { RobotSheet } from "../channel/messages"
+import type { Command, PageMessage, RobotSheet } from "../channel/messages"
 import { made } from "../core/dom"
 import { said, type Texts } from "../core/words"
 import { pressed, SheetDialog } from "./sheet"
 
 /** Open the robots; the present one has the focus. */
-export function chooseRobot(texts: Texts, { robots }: RobotSheet, present: string, choose: (name: string) => void): SheetDialog {
+export function chooseRobot(texts: Texts, { robots }: RobotSheet, present: string, send: (message: Command | PageMessage) => void): SheetDialog {
     const sheet = new SheetDialog(texts, "robots", said(texts, "robots.choose"))
     const cards = robots.map(robot => {
         const card = pressed("card", "", () => {
             sheet.close()
-            if (robot.name !== present) choose(robot.name)
+            if (robot.tip) send({ is: "choose_tip", robot: robot.name, tip: robot.tip })
+            else if (robot.name !== present) send({ do: "ChooseRobot", name: robot.name })
         })
         const picture = Object.assign(made("img", "robot"), { src: robot.picture, alt: "" }) // its name stands beside it
         card.append(picture, made("b", "", robot.label), made("span", "differs", robot.differs))
         card.title = robot.text
-        card.tabIndex = robot.name === present ? 0 : -1
-        if (robot.name === present) card.setAttribute("aria-current", "true")
+        const isPresent = robot.is_built && robot.name === present
+        card.tabIndex = isPresent ? 0 : -1
+        if (isPresent) card.setAttribute("aria-current", "true")
         return card
     })
     const grid = made("div", "grid", ...cards)

@@ -1,0 +1,119 @@
+"""Robots of the server's own files with another tip, built when somebody chooses it."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+from typing_extensions import override
+
+from onpath.app.common.newcomer import NEWCOMER
+from onpath.app.common.robot_files import (
+    GivenFile,
+    ReadFile,
+    add_read,
+    built_with,
+    given_file,
+    read_file,
+)
+from onpath.app.exports.export_process import ExportError, ExportProcess
+from onpath.app.lab.commands import ChooseRobot
+from onpath.app.lab.lab import Command, Lab
+from onpath.app.lab.robot_settings import RobotSettings
+from onpath.app.server.robot_shapes import prepare_shapes
+from onpath.app.simulation.simulation_thread import SimulationThread
+from onpath.models.control.settable import with_values
+from onpath.models.errors import CodedError, Message
+from onpath.models.systems.catalogue import robot_named
+
+LONGEST = 60.0  # [s] in which a file is read
+Post = Callable[[Command], None]
+
+
+class RobotTips:
+    """The tips that files suggest which were given when the server was started.
+
+    A robot is built once, one at a time, and is the same for all labs of the server.
+
+    Args:
+        thread: adds robots to the catalogue, between two frames.
+    """
+
+    def __init__(self, thread: SimulationThread) -> None:
+        self._thread, self._one_at_a_time = thread, threading.Lock()
+
+    def choose(self, robot: str, tip: str, post: Post) -> None:
+        """Give a lab the robot with another tip; if it fails, the lab keeps its own and is told.
+
+        Args:
+            robot: a robot of the file.
+            post: of the lab.
+
+        Raises:
+            CodedError: no file suggests this tip.
+        """
+        given = given_file(robot)
+        if given is None or tip not in given.tips:
+            raise CodedError("robots.no_such_tip")
+        wanted = given.with_tip(tip)
+        with self._one_at_a_time:
+            name = built_with(wanted)
+            if not name:
+                name = self._built(wanted, lambda told: post(Tell(told)))
+        if name:
+            post(_ChooseBuilt(name))
+
+    def _built(self, wanted: GivenFile, tell: Callable[[Message], None]) -> str:
+        """Build a robot; returns its name, or "" if it has been told why it is not possible."""
+        names = {"file": wanted.file.name[:40], "tip": wanted.tip[:40]}
+        tell(Message("robots.reading", names))
+        process = ExportProcess()
+        try:
+            found = process.call(LONGEST, _read, wanted)
+        except ExportError as error:
+            found = Message("robots.not_read", {"reason": str(error).splitlines()[-1][:200]})
+        finally:
+            process.stop()
+        if isinstance(found, Message):
+            tell(Message("robots.not_built", {**names, "reason": found}))
+            return ""
+        tell(Message("robots.shapes", names))
+        prepare_shapes(found.source.chain)
+        return self._thread.call(partial(add_read, found)).name
+
+
+def _read(given: GivenFile) -> ReadFile | Message:
+    """What a process reads: the robot, or why there is none."""
+    try:
+        return read_file(given.file, given.options)
+    except CodedError as error:
+        return error.message
+
+
+@dataclass(frozen=True, slots=True)
+class Tell(Command):
+    """Say how far the building of a robot is, or why there is none."""
+
+    message: Message | str
+
+    @override
+    def apply(self, lab: Lab) -> None:
+        said = self.message
+        lab.remark(said if isinstance(said, str) else lab.words.sentence(said))
+
+
+@dataclass(frozen=True, slots=True)
+class _ChooseBuilt(Command):
+    """Choose a robot that was built after the lab was opened; it starts slowly, as others do."""
+
+    name: str
+
+    @override
+    def apply(self, lab: Lab) -> None:
+        entry, simulation = robot_named(self.name), lab.simulation
+        if entry is not simulation.entry:
+            slow = with_values(entry.parameters(), NEWCOMER)
+            simulation.earlier.setdefault(self.name, RobotSettings(slow))
+        ChooseRobot(self.name).apply(lab)

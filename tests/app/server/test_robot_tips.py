@@ -1,0 +1,107 @@
+"""The tips that a server's file suggests are built when they are chosen, and for all labs alike."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+from onpath.app.cli.robot_options import RobotOptions
+from onpath.app.common.robot_files import add_read, given_file, read_file
+from onpath.app.exports.export_process import ExportProcess
+from onpath.app.lab.loops.loop_cache import LoopCache
+from onpath.app.server.lab_server import LabServer
+from onpath.app.server.server_options import ServerOptions
+from onpath.app.view.robots import robot_sheet
+from onpath.lessons.words import ENGLISH
+from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.file_chain import Options
+from tests.support.robot_files import PLANAR, urdf
+from tests.support.student import Student
+
+FORK = (
+    '<joint name="a" type="fixed"><parent link="link3"/><child link="tool0"/></joint>'
+    '<link name="tool0"/></robot>'
+)
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LabServer]:
+    file = tmp_path_factory.mktemp("robot") / "arm.urdf"
+    file.write_text(urdf("own", PLANAR).replace("</robot>", FORK), "utf-8")
+    before = dict(ROBOTS)
+    entry = RobotOptions(tip="tool0").entry_of(str(file))
+    server = LabServer("127.0.0.1", 0, LoopCache(), ServerOptions(robot=entry))
+    yield server
+    server.stop()
+    for name in ROBOTS.keys() - before.keys():
+        del ROBOTS[name]
+
+
+def student(server: LabServer) -> Student:
+    return Student(f"ws://127.0.0.1:{server.server.get_port()}", scene=False)
+
+
+def cards(page: Student) -> dict[str, dict]:
+    """Of the robots from files, by their tips."""
+    return {card["tip"]: card for card in page.ask("robots")["robots"] if card["tip"]}
+
+
+def test_a_tip_is_built_when_it_is_chosen_and_is_there_for_all(server: LabServer) -> None:
+    with student(server) as page, student(server) as other:
+        for each in (page, other):
+            each.open()
+            each.read(lambda each=each: each.state)
+        offered = cards(page)
+        assert set(offered) == {"tool0", "tip", "link3"}
+        assert [tip for tip, card in offered.items() if card["is_built"]] == ["tool0"]
+        first, count = page.state["robot"], len(ROBOTS)
+        page.tell({"is": "choose_tip", "robot": first, "tip": "tip"})
+        page.read(lambda: page.state["robot"] != first)
+        name = page.state["robot"]
+        given = given_file(name)
+        assert len(ROBOTS) == count + 1 and given is not None and given.tip == "tip"
+        assert not ROBOTS[name].guesses or ROBOTS[name].guesses[0].kind != "tip"
+        assert cards(other)["tip"]["is_built"] and other.state["robot"] == first
+        other.tell({"is": "choose_tip", "robot": first, "tip": "tip"})
+        other.read(lambda: other.state["robot"] == name)
+        assert len(ROBOTS) == count + 1
+
+
+def test_a_tip_that_fails_says_why_and_the_robot_stays(server: LabServer) -> None:
+    with student(server) as page:
+        page.open()
+        page.read(lambda: page.state)
+        first, names = page.state["robot"], set(ROBOTS)
+        given = given_file(first)
+        assert given is not None
+        kept = given.file.read_text("utf-8")
+        given.file.write_text("<robot>", "utf-8")  # somebody has spoiled it meanwhile
+        for tip, told in (("link3", "arm.urdf"), ("link2", ENGLISH("robots.no_such_tip"))):
+            page.tell({"is": "choose_tip", "robot": first, "tip": tip})
+            page.read(lambda told=told: told in (said := page.state["message"]) and "…" not in said)
+        given.file.write_text(kept, "utf-8")
+        assert page.state["robot"] == first and set(ROBOTS) == names
+        assert cards(page)["link3"]["is_built"] is False
+
+
+def test_a_process_learns_of_robots_that_are_added_while_it_runs(server: LabServer) -> None:
+    process, given = ExportProcess(), given_file(next(reversed(ROBOTS)))
+    assert given is not None
+    try:
+        assert set(process.call(60, _names)) == set(ROBOTS)
+        other = server.thread.call(lambda: add_read(read_file(given.file, Options(tip="link3"))))
+        assert other.name in process.call(60, _names)
+    finally:
+        process.stop()
+
+
+def _names() -> list[str]:
+    return list(ROBOTS)
+
+
+def test_every_robot_is_offered_once(server: LabServer) -> None:
+    sheet = robot_sheet(ENGLISH)
+    assert len({(card.name, card.tip, card.is_built) for card in sheet.robots}) == len(sheet.robots)
+    assert {card.name for card in sheet.robots if card.is_built} == set(ROBOTS)
+    del server
