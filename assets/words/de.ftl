@@ -1766,7 +1766,7 @@ robot_file-mujoco_slow = MuJoCo wurde beim Lesen von { $file } beendet: Es brauc
 robot_file-mujoco_ended = MuJoCo ist beim Lesen von { $file } ausgefallen: Es ist abgestürzt oder brauchte zu viel Speicher
 robot_file-mujoco_warns = MuJoCo warnt: { $reason }
 robot_file-same_name = { $name } heißt schon ein anderer Roboter
-robot_file-absent_robot = diese Einstellung ist für den Roboter { $name } aus einer Datei: Starten Sie das Labor mit --robot und dieser Datei
+robot_file-absent_robot = diese Einstellung ist für den Roboter { $name } aus einer Datei: Starten Sie das Labor mit { $line } und mit den Optionen, mit denen es dort gestartet wurde
 robot_file-guessed_tip = die Datei sagt nicht, welches Glied die Spitze ist: genommen wird { $tip }
 robot_file-guessed_free = schwebende, ebene und Kugelgelenke bleiben, wo sie sind: { $joints }{ $more ->
         [0] {""}

@@ -1360,7 +1360,7 @@ robot_file-mujoco_slow = MuJoCo was ended while it read { $file }: it took more 
 robot_file-mujoco_ended = MuJoCo has ended while it read { $file }: it crashed, or needed too much memory
 robot_file-mujoco_warns = MuJoCo warns: { $reason }
 robot_file-same_name = { $name } is the name of another robot
-robot_file-absent_robot = this set-up is for the robot { $name }, which comes from a file: start the lab with --robot and that file
+robot_file-absent_robot = this set-up is for the robot { $name }, which comes from a file: start the lab with { $line }, and with the options that it was started with there
 robot_file-guessed_tip = the file does not say which link is the tip: { $tip } is taken
 robot_file-guessed_free = floating, planar and ball joints stay where they are: { $joints }{ $more ->
         [0] {""}

@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from onpath.app.common.robot_files import given_file
 from onpath.app.lab.robot_settings import RobotSettings
-from onpath.app.lab.setups.setup import DRAWN, EDITED, UNIT, Path, RobotSetup, Setup
+from onpath.app.lab.setups.setup import DRAWN, EDITED, LONGEST_WORD, UNIT, Path, RobotSetup, Setup
 from onpath.app.lab.simulation import Simulation
 from onpath.models.closed_loop.lab_settings import Kept, LabSettings, settings_kept
 from onpath.models.control.settable import specs, values_of
@@ -40,12 +41,19 @@ def capture(simulation: Simulation) -> Setup:
 
 def _captured(name: str, settings: RobotSettings, paths: Mapping[str, PathDesign]) -> RobotSetup:
     """The set-up of one robot."""
-    editor = settings.editor
+    editor, given = settings.editor, given_file(name)
     return RobotSetup(
         parameters=dict(_differences(name, settings.parameters)),
         path=capture_path(editor.design, paths) if editor else Path(),
         settings=dict(own_differences(settings.own, "code", of_robot=True)),
+        file="" if given is None else _plain_name(given.file.name),
+        tip="" if given is None else _plain_name(given.tip),
     )
+
+
+def _plain_name(name: str) -> str:
+    """A name as it can be typed; "" for one that cannot be told in a line."""
+    return name if len(name) <= LONGEST_WORD and name.isprintable() else ""
 
 
 @lru_cache(maxsize=256)  # every lab is captured once a second

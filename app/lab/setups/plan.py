@@ -11,9 +11,11 @@ from typing import Any
 import msgspec
 import numpy as np
 
+from onpath.app.common.robot_files import to_type
 from onpath.app.lab.setups.setup import (
     DRAWN,
     EDITED,
+    LONGEST_WORD,
     UNIT,
     Path,
     RobotSetup,
@@ -34,6 +36,7 @@ from onpath.models.systems.catalogue import ROBOTS, RobotEntry
 from onpath.models.systems.parameter_specs import NOTHING, unknown_name
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
+from onpath.models.systems.xml_elements import shown
 
 _FROM_FILE = re.compile(r"[a-z0-9_]+_[0-9a-f]{8}")  # the name of a `RobotFile`
 DRAWN_POINTS = {True: 10, False: 6}  # control points of closed and open strokes, as in `drawn`
@@ -89,7 +92,8 @@ def planned(setup: Setup, paths: Mapping[str, PathDesign]) -> dict[str, Wanted]:
 def wanted_robot(name: str, robot: RobotSetup, paths: Mapping[str, PathDesign]) -> Wanted:
     """One robot of a set-up; see `planned`."""
     if is_absent(name):
-        raise CodedError("robot_file.absent_robot", name=name)
+        file, tip = (shown(text, LONGEST_WORD) for text in (robot.file, robot.tip))
+        raise CodedError("robot_file.absent_robot", name=name, line=to_type(file, tip))
     if name not in ROBOTS:
         raise unknown_name(name, list(ROBOTS), "robot")
     parameters = ROBOTS[name].parameters()

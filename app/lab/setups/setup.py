@@ -23,6 +23,9 @@ EDITED, DRAWN = "edited", "drawn"  # names of paths that are not presets
 Word = Annotated[str, msgspec.Meta(max_length=40, pattern=r"^[A-Za-z0-9_ -]*$")]
 LawName = Annotated[str, msgspec.Meta(max_length=LONGEST)]
 """The name of a control law, or a typed law; `checked_laws` reads it."""
+LONGEST_WORD = 80
+FileWord = Annotated[str, msgspec.Meta(max_length=LONGEST_WORD)]
+"""A name that is only shown."""
 Values = Annotated[dict[Word, bool | int | float | Word], msgspec.Meta(max_length=100)]
 Length = Annotated[int, msgspec.Meta(ge=-1_000_000, le=1_000_000)]
 Lengths = Annotated[tuple[Length, ...], msgspec.Meta(max_length=2 * max(TERMS, MOST_POINTS))]
@@ -48,11 +51,15 @@ class RobotSetup(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     Attributes:
         settings: those of `LabSettings` that each robot has for itself.
+        file, tip: name of the file of a robot from a file, and its end-point, for whoever has not
+            started the lab with it.
     """
 
     parameters: Values = {}
     path: Path = Path()
     settings: Values = {}
+    file: FileWord = ""
+    tip: FileWord = ""
 
 
 class Setup(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
