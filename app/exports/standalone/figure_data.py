@@ -51,10 +51,9 @@ from onpath.models.paths.curves import TERMS, Curve
 from onpath.models.paths.path_checks import POINT_CHECKS, SAMPLES
 from onpath.models.standalone.edit import OUTLINE, ROW
 from onpath.models.standalone.fit import FINE, PIECE
-from onpath.models.standalone.poles import BEHAVIOURS, SLOW, STEPS, roots_scan
 from onpath.models.systems.efforts import efforts
 from onpath.models.systems.law_parameters import LEVEL_SET
-from onpath.models.systems.parameters import time_step
+from onpath.models.systems.parameters import look_ahead_time, time_step
 from onpath.models.systems.robots import Robot
 
 
@@ -66,10 +65,9 @@ def figure_numbers(figure: FigureChoice) -> dict[str, Any]:
         "box": _box(figure),
         "poles": {
             "interval": 1 / figure.parameters.control_rate,
-            "steps": STEPS,
-            "size": roots_scan(figure.parameters).step.numel_in(0),
-            "slow": SLOW,
-            "behaviours": BEHAVIOURS,
+            "ahead": look_ahead_time(figure.parameters),
+            "delay": figure.parameters.delay,
+            "position": figure.parameters.task == "position",
         },
         "module": b64encode(gzip.compress(figure_module(figure), mtime=0)).decode(),
     }
@@ -127,7 +125,8 @@ def common_data(figure: FigureChoice, words: Words, numbers: Mapping[str, Any]) 
             figure.entry.guesses,
         ),
         "efforts": _efforts(robot),
-        "poles": numbers["poles"],
+        "poles": numbers["poles"]
+        | {"gains": [kernel.settings.slices[f"K{i}"].start for i in range(1, 6)]},
         "critical": _limits(figure, numbers["critical"], words),
         "edit": _EDIT,
         "module": numbers["module"],

@@ -24,7 +24,6 @@ from onpath.models.standalone.fit import (
     spline_function,
     table_function,
 )
-from onpath.models.standalone.poles import pole_functions, roots_scan
 from onpath.models.standalone.states import begin_function, change_function
 
 Parts = tuple[dict[str, ca.Function], dict[str, Scan]]
@@ -94,10 +93,6 @@ def _shared(figure: FigureChoice) -> Parts:
         for design in (design_of(name, curve) for name, curve in paths.items()):
             count = len(design.points)
             functions[f"spline.{fit_name(design)}"] = spline_function(design.curve.closed, count)
-    if "poles" in figure.controls:
-        settings = figure.kernel(figure.laws[0], next(iter(paths.values()))).settings
-        functions |= pole_functions(figure.parameters, settings)
-        scans["roots"] = roots_scan(figure.parameters)
     return functions, scans
 
 

@@ -12,6 +12,10 @@ export type Point = [number, number]
 type Numbers<Name extends string> = Record<Name, number>
 type Texts<Name extends string> = Record<Name, string>
 
+/** What the poles of a linear law depend on besides its gains: the sampling interval and the look-ahead [s], the computing
+ * delay in intervals, whether the position along the path is controlled, and where K1 to K5 are in the settings. */
+export interface PoleNumbers { interval: number; ahead: number; delay: number; position: boolean; gains: number[] }
+
 export interface SideData { law: number; side: 0 | 1 }
 
 export interface LawData extends Texts<"title" | "text"> {
@@ -104,7 +108,7 @@ export interface FigureData extends Texts<"language" | "module"> {
     efforts: EffortData[]
     /** For each path the least α on it from which on the zero dynamics are unstable, and what is said below and beyond. */
     critical: { limit: number; notes: [string, string] }[]
-    poles: Numbers<"interval" | "size" | "steps" | "slow"> & { behaviours: string[] }
+    poles: PoleNumbers
     edit: Numbers<"piece" | "fine" | "sums" | "row" | "samples" | "outline" | "grid"> &
         Numbers<"halvings" | "blend" | "nudge"> & { checks: string[] }
 }

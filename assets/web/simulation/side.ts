@@ -35,7 +35,7 @@ export class Side {
     private readonly longest = Math.max(...this.path.data.states.map(each => each.length))
     private readonly state = this.kernels.room(this.longest)
     private readonly begun = this.kernels.room(this.longest) // the state at the start
-    readonly settings = this.kernels.room(this.path.data.settings.length)
+    private readonly settings = this.kernels.room(this.path.data.settings.length)
     private readonly log = this.kernels.room((1 + MOST_TICKS) * this.sizes.log) // the last row, then new ones
     private readonly result = this.kernels.room(2 * this.sizes.p + 4 + this.sizes.n)
     private readonly points = this.kernels.room(4 * this.sizes.bars + 2 * this.sizes.joints)
@@ -87,6 +87,8 @@ export class Side {
         for (const [place, value] of numbers) this.set(place, value)
     }
 
+    /** The number at a place in the settings. */
+    readonly setting = (place: number): number => this.kernels.numbers[this.settings + place]!
     private readonly set = (place: number, value: number) => (this.kernels.numbers[this.settings + place] = value)
     /** Advance by some ticks; a robot that stops stays as it was one tick before, as in the lab. */
     advance(ticks: number): void {

@@ -6,7 +6,7 @@ import { said } from "../core/words"
 import type { Kernels } from "./kernels"
 import { Changes } from "./changes"
 import { Path } from "./path"
-import { Poles, type Channel } from "./poles"
+import { channels, type Channel } from "./poles"
 import { Side, MOST_TICKS, type Kept } from "./side"
 
 const MINUTE = 60 // [s], kept in memory
@@ -30,7 +30,6 @@ export class Simulation {
     readonly paths = this.data.paths.map(path => new Path(path, this.data, this.kernels))
     readonly sides = this.data.sides.map(each => new Side(each, this.data, this.kernels, this.paths[0]!))
     readonly changes = new Changes(this.data.changes, this.data.loops)
-    private readonly channels = new Poles(this.data, this.kernels)
     private readonly period = Math.min(Math.max(Math.round(PERIOD / this.data.dt), 1), MOST_TICKS) // in ticks
     /** Called at each change. */
     changed: (change: Change) => void = () => {}
@@ -54,7 +53,7 @@ export class Simulation {
     /** The poles, if a law has them. */
     get poles(): Channel[] {
         const side = this.data.controls.includes("poles") && this.sides.find(each => each.does().linear)
-        return side ? this.channels.of(side.settings) : []
+        return side ? channels(this.data, this.data.poles.gains.map(gain => side.setting(gain))) : []
     }
 
     /** The present moment. */

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -13,13 +12,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from onpath.models.arrays import Array
-from onpath.models.closed_loop.loop_kind import Kind
-from onpath.models.closed_loop.loop_vectors import settings_layout
 from onpath.models.closed_loop.simulation import kind_of
 from onpath.models.closed_loop.wasm_loop import Scan
-from onpath.models.control.poles import channels
-from onpath.models.control.settable import changed
-from onpath.models.errors import CodedError, Message
+from onpath.models.errors import CodedError
 from onpath.models.evaluated import evaluated
 from onpath.models.paths.curve_blend import blend
 from onpath.models.paths.curve_faults import ambiguities, curve_faults
@@ -29,15 +24,12 @@ from onpath.models.paths.path_checks import SAMPLES
 from onpath.models.paths.path_design import REACH, presets
 from onpath.models.standalone.edit import CHECKS, ROW, edit_scans
 from onpath.models.standalone.fit import (
-    PIECE,
     arc_scan,
     resample_scan,
     spline_function,
     table_function,
 )
-from onpath.models.standalone.poles import BEHAVIOURS, SLOW, STEPS, pole_functions, roots_scan
 from onpath.models.systems.catalogue import ROBOTS
-from onpath.models.systems.five_bar_parameters import FiveBarParameters
 
 
 def scanned(
@@ -214,65 +206,3 @@ def threshold(name: str, check: str, begin: Curve, end: Curve) -> tuple[float, f
         same = (check in lab_checks(name)(blend(begin, end, middle))) == first
         low, high = (middle, high) if same else (low, middle)
     return low, high
-
-
-GAINS = st.floats(0, 1000)
-
-
-@pytest.mark.thorough
-@settings(max_examples=30)
-@given(
-    st.tuples(GAINS, st.floats(0, 100), st.sampled_from([0.0, 50.0, 3000.0])),
-    st.tuples(st.floats(0, 50), st.floats(0, 40), st.sampled_from(["speed", "position"])),
-    st.sampled_from([100, 200, 1000]),
-    st.sampled_from([0.0, 0.5, 1.0, 1.5, 2.0]),
-)
-def test_poles_are_those_of_the_lab(
-    across: tuple[float, float, float],
-    along: tuple[float, float, str],
-    rate: int,
-    delay: float,
-) -> None:
-    parameters = replace(FiveBarParameters(), control_rate=rate, delay=delay)
-    for name, gain in zip(("K1", "K2", "K3"), across, strict=True):
-        parameters = changed(parameters, name, gain)
-    for name, value in zip(("K4", "K5", "task"), along, strict=True):
-        parameters = changed(parameters, name, value)
-    layout = settings_layout(ROBOTS["five_bar"].make(parameters).system, Kind("path_following"))
-    numbers = np.zeros(layout.size)
-    for gain in ("K1", "K2", "K3", "K4", "K5"):
-        numbers[layout.slices[gain]] = getattr(parameters, gain)
-    functions, scan = pole_functions(parameters, layout), roots_scan(parameters)
-    *polynomials, first = functions["polynomials"](numbers)
-    for channel, polynomial in zip(channels(parameters), polynomials, strict=True):
-        values = polynomial.full()
-        roots, _ = scanned(scan, first.full().ravel(), values, np.zeros((0, STEPS)), STEPS)
-        found = functions["settling"](roots, values, 1 / rate).full().ravel()
-        poles = np.sort(found[1 : 1 + 2 * SLOW : 2][: int(found[0])])
-        expected = np.sort(channel.poles.real)
-        scale = max(1.0, float(np.abs(expected).max()))
-        np.testing.assert_allclose(poles / scale, expected / scale, atol=1e-4)
-        near = np.abs(expected + 1e-3).min() < 1e-5 or abs(found[-1] - 0.995) < 1e-3
-        if near:
-            continue  # rounding decides
-        said = channel.behaviour()
-        kind = said.arguments.get("kind", said)
-        assert isinstance(kind, Message)
-        assert f"behaviour.{BEHAVIOURS[int(found[-3])]}" == kind.code
-        if "seconds" in said.arguments:
-            assert float(str(said.arguments["seconds"])) == pytest.approx(found[-2], rel=0.06)
-
-
-@pytest.mark.thorough
-def test_the_poles_of_a_new_lab_are_the_double_ones_of_the_text() -> None:
-    parameters = replace(FiveBarParameters(), K1=400.0, K2=40.0, K3=0.0)
-    layout = settings_layout(ROBOTS["five_bar"].make(parameters).system, Kind("path_following"))
-    numbers = np.zeros(layout.size)
-    numbers[layout.slices["K1"]], numbers[layout.slices["K2"]] = 400.0, 40.0
-    functions, scan = pole_functions(parameters, layout), roots_scan(parameters)
-    across, _, first = functions["polynomials"](numbers)
-    roots, _ = scanned(scan, first.full().ravel(), across.full(), np.zeros((0, STEPS)), STEPS)
-    found = functions["settling"](roots, across, 1e-3).full().ravel()
-    assert found[0] == 2 and found[2] == found[4] == 0
-    np.testing.assert_allclose(found[[1, 3]], -20, rtol=0.02)
-    assert PIECE == 10
