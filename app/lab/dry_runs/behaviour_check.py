@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cache
 from typing import Any
 
 from typing_extensions import override
@@ -31,6 +32,7 @@ from onpath.models.control.laws.registry import LAWS
 from onpath.models.errors import Coded, Message
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameter_specs import Spec
+from onpath.models.systems.parameters import Parameters
 
 FRAME = 1 / 60  # [s]
 REFUSALS = {"say.refused", "say.no_further"}
@@ -252,4 +254,10 @@ def _names() -> set[str]:
 
 
 def _specs(robot: str) -> Mapping[str, Spec]:
-    return step_specs(ROBOTS[robot].parameters)
+    return _specs_of(ROBOTS[robot].parameters)
+
+
+@cache
+def _specs_of(kind: type[Parameters]) -> Mapping[str, Spec]:
+    """What a step can set; asked for each name of each text."""
+    return step_specs(kind)

