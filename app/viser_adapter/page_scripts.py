@@ -20,6 +20,8 @@ SAID = (
 )
 """Messages of browser_words.js."""
 TITLES = b"<title>Viser</title>", b"<title>OnPath</title>"
+BODY = b"</head>\n<body>\n"
+"""Begins the body before viser's script of 0.8 MB, so that our page is there while that comes."""
 
 
 def add_scripts(
@@ -80,5 +82,5 @@ def words(course_url: str = "") -> bytes:
 def _page(body: bytes, packed: bool, course_url: str, more: bytes) -> bytes:
     """The page with our scripts. Cached, because viser serves the same bytes every time."""
     page = gzip.decompress(body) if packed else body
-    page = with_scripts(page.replace(*TITLES, 1), our_scripts(course_url) + more)
+    page = with_scripts(page.replace(*TITLES, 1), our_scripts(course_url) + more + BODY)
     return gzip.compress(page, mtime=0) if packed else page

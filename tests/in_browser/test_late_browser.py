@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 import sys
+import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -84,6 +85,26 @@ def test_a_page_whose_first_messages_are_late_becomes_whole(
     try:
         assert_whole(page)
     finally:
+        page.context.close()
+        proxy.close()
+
+
+def test_the_lab_is_there_and_obeys_before_the_script_of_its_picture_has_come(
+    browser: Browser, served: LabProcess
+) -> None:
+    may_come = threading.Event()
+    proxy = LateProxy(served.port, lambda: 0.0, may_come)
+    page = browser.new_context().new_page()
+    try:
+        page.goto(f"http://127.0.0.1:{proxy.port}/", wait_until="commit")
+        page.get_by_role("button", name="Hold both back").click()
+        page.wait_for_function("onpathLab.state.held")
+        expect(page.get_by_role("button", name="About the laws")).to_be_visible()
+        assert page.locator("canvas[data-engine]").count() == 0
+        may_come.set()
+        page.wait_for_selector("canvas[data-engine]", state="attached")
+    finally:
+        may_come.set()
         page.context.close()
         proxy.close()
 

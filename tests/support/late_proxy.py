@@ -9,6 +9,8 @@ from collections.abc import Callable
 from contextlib import suppress
 
 END = b"\r\n\r\n"
+SCRIPT = b"<script data-p="
+"""With which viser's own script begins."""
 
 
 class LateProxy:
@@ -17,10 +19,13 @@ class LateProxy:
     Args:
         delay: returns how late [s] the answer to the next websocket's handshake, its first message
             from the browser and the first one to it are; called once for each of them.
+        script: set when viser's script may come with the page.
     """
 
-    def __init__(self, to: int, delay: Callable[[], float]) -> None:
-        self._to, self._delay = to, delay
+    def __init__(
+        self, to: int, delay: Callable[[], float], script: threading.Event | None = None
+    ) -> None:
+        self._to, self._delay, self._script = to, delay, script
         self._listener = socket.create_server(("127.0.0.1", 0))
         self.port: int = self._listener.getsockname()[1]
         threading.Thread(target=self._accept, daemon=True).start()
@@ -38,6 +43,8 @@ class LateProxy:
     def _serve(self, browser: socket.socket) -> None:
         with suppress(OSError), browser, socket.create_connection(("127.0.0.1", self._to)) as lab:
             request = _until_end(browser)
+            if self._script:
+                request = request.replace(b"Accept-Encoding: ", b"Encodings: ")
             lab.sendall(request)
             first_from = first_to = 0.0
             if b"upgrade: websocket" in request.lower():
@@ -47,10 +54,22 @@ class LateProxy:
                 browser.sendall(head + END)
                 back = threading.Thread(target=_pass, args=(lab, browser, first_to, rest))
             else:
-                back = threading.Thread(target=_pass, args=(lab, browser, first_to))
+                head = self._first_part(lab, browser) if self._script else b""
+                back = threading.Thread(target=_pass, args=(lab, browser, first_to, head))
             back.start()
             _pass(browser, lab, first_from)
             back.join()
+
+    def _first_part(self, lab: socket.socket, browser: socket.socket) -> bytes:
+        """Pass on what comes before viser's script, and wait; return what has come of the rest."""
+        got = b""
+        while SCRIPT not in got and (data := lab.recv(65536)):
+            got += data
+        first, _, rest = got.partition(SCRIPT)
+        browser.sendall(first)
+        assert self._script
+        self._script.wait()
+        return SCRIPT + rest if SCRIPT in got else b""
 
 
 def _until_end(source: socket.socket) -> bytes:

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 import viser
 
-from onpath.app.viser_adapter.page_scripts import TITLES, our_scripts, with_scripts, words
+from onpath.app.viser_adapter.page_scripts import BODY, TITLES, our_scripts, with_scripts, words
 from onpath.app.viser_adapter.secure_server import make_server
 from onpath.assets import asset_path
 
@@ -60,11 +60,12 @@ def test_the_page_is_visers_and_our_scripts(port: int, path: str, encoding: str)
         assert reply.headers.get_all("Content-Length") == [str(len(body))]
         assert (reply.getheader("Content-Type") or "").startswith("text/html")
         page = gzip.decompress(body) if encoding == "gzip" else body
-        assert page.count(our_scripts()) == 1
+        added = our_scripts() + BODY
+        assert page.count(added) == 1
         ours = INDEX.read_bytes().replace(*TITLES)
-        assert page.replace(our_scripts(), b"") == ours and b"<title>OnPath<" in page
+        assert page.replace(added, b"") == ours and b"<title>OnPath<" in page
         assert page.index(b"<meta charset") < 900  # a browser looks for it in the first 1024 bytes
-        assert page.index(our_scripts()) + len(our_scripts()) == page.index(b"<script data-p")
+        assert page.index(added) + len(added) == page.index(b"<script data-p")
 
 
 def test_nothing_else_is_touched(port: int) -> None:
