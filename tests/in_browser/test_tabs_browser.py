@@ -14,7 +14,6 @@ pytest.importorskip("playwright")
 
 from playwright.sync_api import Browser, Download, Page, expect
 
-from onpath.app.server.lab_server import LabServer
 from onpath.models.control.sides import LEFT, RIGHT
 from tests.bench.mouse_latency import NO_TRIANGLES
 from tests.support.browser import SELDOM, THREE_FRAMES, Tab, wait_for
@@ -115,40 +114,6 @@ def test_another_tab_is_another_lab_that_ends_with_it(tab: Tab) -> None:
     del second.display, second.client
     wait_for(lambda: gc.collect() >= 0 and not [ref for ref in left if ref() is not None])
     assert len(tab.server.server.get_clients()) == clients
-
-
-def test_a_narrow_screen_shows_both_robots_and_the_buttons(
-    browser: Browser, server: LabServer
-) -> None:
-    context = fresh(browser, viewport={"width": 390, "height": 844}, has_touch=True)
-    tab = Tab(server, context, draws=False)
-    for name in (TRACKER, FOLLOWER):
-        for point in tab.simulation.editor.points():
-            x, y = tab.placed(name, point)
-            assert 0 < x < 390 and 0 < y < 0.5 * 844
-    tab.button("Hold both back").scroll_into_view_if_needed()
-    tab.press("Hold both back")
-    wait_for(lambda: len(tab.simulation.forces.held) == 2)
-    assert tab.page.evaluate("document.documentElement.scrollWidth") <= 390
-    context.close()
-
-
-def test_an_upright_tablet_has_the_robots_across_its_width_above_the_panel(
-    browser: Browser, server: LabServer
-) -> None:
-    context = fresh(browser, viewport={"width": 820, "height": 1180}, has_touch=True)
-    tab = Tab(server, context, draws=False)
-
-    def apart() -> float:
-        places = [tab.pixel(name, np.zeros(3)) for name in (TRACKER, FOLLOWER)]
-        return places[1][0] - places[0][0]
-
-    wait_for(lambda: apart() > 0.4 * 820)
-    for name in (TRACKER, FOLLOWER):
-        for point in tab.simulation.editor.points():
-            x, y = tab.placed(name, point)
-            assert 0 < x < 820 and 0 < y < 0.4 * 1180
-    context.close()
 
 
 def test_hostile_text_is_not_rendered(tab: Tab) -> None:
