@@ -1178,6 +1178,8 @@ parameter-posture_stiffness-help = Feder, die die Gelenke zur Ausgangsstellung z
 
 parameter-posture_damping-label = Haltungsdämpfer
 parameter-posture_damping-help = Dämpfer der Gelenkbewegung, die die Spitze nicht bewegt; 0: keiner
+parameter-limit_avoidance-label = Abstand von Anschlägen
+parameter-limit_avoidance-help = wie sehr ein Gelenk nahe dem Ende seines Wegs geschont wird, wo sich stattdessen andere bewegen können, ohne dass sich die Spitze bewegt; 0: gar nicht
 
 parameter-payload-label = Last
 parameter-payload-help = Masse an der Spitze; der Regler weiß nichts davon, und sein Integral hebt nicht mehr, als sonst 10 mm tief hinge
@@ -1751,15 +1753,19 @@ robot_file-no_joint = ein Gelenk { $joint } gibt es nicht, aber { $names }
 robot_file-pose = { $joint }: { $value } ist keine Stellung
 robot_file-pose_outside = { $joint }: { $value } liegt nicht zwischen den Grenzen { $low } und { $high }
 robot_file-armature = ein Läufer-Trägheitsmoment von { $value } kg m²: erwartet wird 0 bis { $most }
-robot_file-few_joints = { $count ->
-    [one] ein Gelenk bewegt
-   *[other] { $count } Gelenke bewegen
- } sich auf dem Weg zur Spitze: Nötig sind mindestens { $needed }
-robot_file-no_pose = keine Stellung gefunden, in der die Spitze vor dem Fuß ist und sich in alle Richtungen bewegen kann: Geben Sie eine mit --pose (in Python pose=…) an
+robot_file-no_pose = die Spitze lässt sich aus keiner Stellung in alle Richtungen bewegen: Ihre Gelenke drehen sie um einen Punkt oder um parallele Achsen. Nennen Sie ein anderes Glied mit --tip (in Python tip=…)
 robot_file-singular = aus dieser Stellung kann sich die Spitze nicht in alle Richtungen bewegen: Geben Sie eine andere mit --pose (in Python pose=…) an
-robot_file-circle = aus dieser Stellung sind Kreise bis { $circle } mm möglich, und Bahnen brauchen { $least } mm: Geben Sie eine andere mit --pose (in Python pose=…) an
+robot_file-circle = Kreise bis { $circle } mm sind möglich, Bahnen brauchen aber { $least } mm: Geben Sie mit --pose eine andere Stellung oder mit --tip ein anderes Glied an (in Python pose=… und tip=…)
+robot_file-single = nur ein Gelenk bewegt die Spitze, wie bei einem Rad, einem Rotor oder einem Greifer: Das ist kein Arm oder Bein, die mindestens zwei haben. Hat die Datei so etwas, nennen Sie sein Ende mit --tip (in Python tip=…)
+robot_file-two_across = zwei Gelenke bewegen die Spitze, aber nicht in einer Ebene, wie bei einer Kamerahalterung: Sie kann keiner Bahn folgen. Hat die Datei einen Arm oder ein Bein, nennen Sie dessen Ende mit --tip (in Python tip=…)
+robot_file-guessed_pose = die Datei nennt keine Stellung: gewählt wird eine, in der sich die Spitze leicht in alle Richtungen bewegt
+robot_file-guessed_pose_floor = die Datei nennt keine Stellung: gewählt wird eine, in der sich die Spitze leicht in alle Richtungen bewegt. Gelenke sind unter dem Boden, weil es darüber keine gute Stellung gibt
+robot_file-guessed_pose_ahead = die Datei nennt keine Stellung: gewählt wird eine, in der sich die Spitze leicht in alle Richtungen bewegt. Sie ist hinter der Basis, weil es davor keine gute Stellung gibt
+robot_file-guessed_pose_floor_ahead = die Datei nennt keine Stellung: gewählt wird eine, in der sich die Spitze leicht in alle Richtungen bewegt. Gelenke sind unter dem Boden und die Spitze ist hinter der Basis, weil es keine andere gute Stellung gibt
+robot_file-guessed_efforts = die Datei sagt nicht, was die Motoren leisten: Sie sind unbegrenzt
+robot_file-guessed_effort = die Datei sagt nicht, was die Motoren von { $joints } leisten: Sie sind unbegrenzt
+robot_file-guessed_armature = mit den Massen der Datei hielte Reibung ein Gelenk in Bruchteilen einer Millisekunde an, oder ein Gelenk bewegt nichts Schweres: Eine Trägheit der Motoren von { $armature } kg m² kommt hinzu
 robot_file-massless = was das Gelenk { $joint } bewegt, hat keine Masse oder Trägheit: Geben Sie mit --armature (in Python armature=…) die Trägheit der Motoren an
-robot_file-damping = Reibung würde ein Gelenk in einem Bruchteil einer Millisekunde anhalten ({ $decay } 1/s); dem folgt kein Zeitschritt. In der Datei fehlt die Trägheit der Motoren: { $armature } kg m² genügen, --armature { $armature } (in Python armature=…)
 robot_file-mujoco = eine MJCF-Datei braucht MuJoCo: pip install "onpath[mujoco]"
 robot_file-mjcf = MuJoCo kann { $file } nicht lesen: { $reason }
 robot_file-mujoco_slow = MuJoCo wurde beim Lesen von { $file } beendet: Es brauchte mehr als { $seconds } s

@@ -1345,15 +1345,19 @@ robot_file-no_joint = there is no joint { $joint }: there are { $names }
 robot_file-pose = { $joint }: { $value } is not a position
 robot_file-pose_outside = { $joint }: { $value } is not between its limits { $low } and { $high }
 robot_file-armature = an armature of { $value } kg m²: expected 0 to { $most }
-robot_file-few_joints = { $count ->
-    [one] one joint moves
-   *[other] { $count } joints move
- } on the way to the tip: at least { $needed } are needed
-robot_file-no_pose = no pose was found in which the tip is in front of the base and can move in all directions: give one with --pose (in Python, pose=…)
+robot_file-no_pose = the tip cannot move in all directions from any pose: its joints turn it about one point, or about parallel axes. Name another link with --tip (in Python, tip=…)
 robot_file-singular = the tip cannot move in all directions from this pose: give another one with --pose (in Python, pose=…)
-robot_file-circle = from this pose, circles of up to { $circle } mm can be followed, but paths need { $least } mm: give another one with --pose (in Python, pose=…)
+robot_file-circle = circles of up to { $circle } mm can be followed, but paths need { $least } mm: give another pose with --pose, or another link with --tip (in Python, pose=… and tip=…)
+robot_file-single = only one joint moves the tip, as with a wheel, a rotor or a gripper: this is no arm or leg, which has at least two. Where the file has one, name its end with --tip (in Python, tip=…)
+robot_file-two_across = two joints move the tip, and not in a plane, as with a camera's mount: it cannot follow a path. Where the file has an arm or leg, name its end with --tip (in Python, tip=…)
+robot_file-guessed_pose = the file says nothing of a pose: one is chosen in which the tip moves easily in all directions
+robot_file-guessed_pose_floor = the file says nothing of a pose: one is chosen in which the tip moves easily in all directions. Joints are below the floor, because there is no good pose above it
+robot_file-guessed_pose_ahead = the file says nothing of a pose: one is chosen in which the tip moves easily in all directions. It is behind the base, because there is no good pose in front of it
+robot_file-guessed_pose_floor_ahead = the file says nothing of a pose: one is chosen in which the tip moves easily in all directions. Joints are below the floor and the tip is behind the base, because there is no other good pose
+robot_file-guessed_efforts = the file does not say what the motors can give: they are unlimited
+robot_file-guessed_effort = the file does not say what the motors of { $joints } can give: they are unlimited
+robot_file-guessed_armature = with the masses in the file, friction would stop a joint within a fraction of a millisecond, or a joint moves nothing that is heavy: an inertia of the motors of { $armature } kg m² is added
 robot_file-massless = what the joint { $joint } moves has no mass or inertia: add an armature with --armature (in Python, armature=…)
-robot_file-damping = friction would stop a joint within a fraction of a millisecond ({ $decay } 1/s), which no time step can follow. The file leaves out the inertia of the motors: { $armature } kg m² is enough, --armature { $armature } (in Python, armature=…)
 robot_file-mujoco = an MJCF file needs MuJoCo: pip install "onpath[mujoco]"
 robot_file-mjcf = MuJoCo cannot read { $file }: { $reason }
 robot_file-mujoco_slow = MuJoCo was ended while it read { $file }: it took more than { $seconds } s

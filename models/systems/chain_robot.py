@@ -10,9 +10,22 @@ all weights, and by the payload, which it does not know. M and c are linear in t
 whose tip can only move in a plane has p = 2 outputs, others p = 3. With more joints than outputs it
 is redundant, and holds a posture by
 
-    u0 = c + D v - M (k_d v + k_p (q - q_home)),
+    u0 = c + D v - M N (k_d v + k_p (q - q_home)),   N = 1 - A J^T (J A J^T)⁻¹ J,   A = (M + B)⁻¹,
 
-of which `linearization` takes the part that does not move the end-point.
+which does not move the end-point: J N = 0. Where the spring is at rest, the joints are as near home
+as the end-point allows, with the weight M + B. By M alone, the light joints of a wrist would go
+farthest, and to their stops. So B makes joints heavy near the ends of their travel, which others
+then move for: with the travel w, the place -1 < s < 1 in it and a gain g,
+
+    B_ii = g μ / w_i² s_i² / (1 - s_i²)²,   μ: the mean of M_jj w_j² at home.
+
+Forces on the end-point move the joints as before, because the motion that is commanded for it is
+distributed among them by M in any case; see `linearization`. With g = 0, and for joints without
+limits, B = 0, and N takes away what `linearization` does not use.
+
+Source of the weight: Chan and Dubey, A weighted least-norm solution based scheme for avoiding joint
+limits for redundant joint manipulators, IEEE Transactions on Robotics and Automation 11 (1995),
+286-292.
 """
 
 from __future__ import annotations
@@ -64,6 +77,8 @@ NEAR_LIMIT = 1 / 8  # of a joint's range, within which the regularity falls to 0
 UNLIMITED = 1e6  # [N m], for a motor whose limit the file does not state
 FASTEST_DECAY = 2500.0  # [1/s], of friction, which one Runge-Kutta step of 1 ms can follow
 MOST_STEPS = 2
+AT_END = 1e-3  # least 1 - s², beside and beyond the ends of a joint's travel
+POSTURE = ("posture_stiffness", "posture_damping", "limit_avoidance")
 SUBSCRIPTS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 
 
@@ -140,11 +155,45 @@ class RedundantSpatialParameters(SpatialChainParameters):
     posture_damping: float = _posture_damping()
 
 
+def _limit_avoidance() -> float:
+    return number(
+        3.0,
+        "",
+        (0, 10, 0.1),
+        "how much a joint near the end of its travel is spared, where others can move instead"
+        " without moving the end-point; 0: not at all",
+        group="robot",
+        label="Limit avoidance",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class LimitedPlanarParameters(RedundantPlanarParameters):
+    """Parameters of such a chain whose joints have limits."""
+
+    limit_avoidance: float = _limit_avoidance()
+
+
+@dataclass(frozen=True, slots=True)
+class LimitedSpatialParameters(RedundantSpatialParameters):
+    """Parameters of such a chain whose joints have limits."""
+
+    limit_avoidance: float = _limit_avoidance()
+
+
 def parameters_of(source: ChainSource) -> type[ChainParameters]:
     """The type of a chain's parameters."""
-    if len(source.axes) == 2:
-        return RedundantPlanarParameters if source.redundant else ChainParameters
-    return RedundantSpatialParameters if source.redundant else SpatialChainParameters
+    planar = len(source.axes) == 2
+    if not source.redundant:
+        return ChainParameters if planar else SpatialChainParameters
+    if _avoids(source):
+        return LimitedPlanarParameters if planar else LimitedSpatialParameters
+    return RedundantPlanarParameters if planar else RedundantSpatialParameters
+
+
+def _avoids(source: ChainSource) -> bool:
+    """Whether it keeps joints off the ends of their travel."""
+    return source.redundant and any(j.high - j.low < math.inf for j in source.chain.joints)
 
 
 def output_axes(chain: Chain) -> tuple[Point, ...]:
@@ -205,7 +254,7 @@ def chain_system(source: ChainSource) -> MechanicalSystem:
     chain, n = source.chain, source.chain.n
     q, v = ca.SX.sym("q", n), ca.SX.sym("v", n)
     names = ("inertia", "weight", "payload")
-    names += ("posture_stiffness", "posture_damping") if source.redundant else ()
+    names += POSTURE[: 3 if _avoids(source) else 2] if source.redundant else ()
     parameters = ca.SX.sym("parameters", len(names))
     p = dict(zip(names, ca.vertsplit(parameters), strict=True))
     frames = chain_frames(chain, q)
@@ -214,9 +263,13 @@ def chain_system(source: ChainSource) -> MechanicalSystem:
     mass = mass_matrix(chain, frames, inertias, p["inertia"])
     friction = ca.DM([joint.damping for joint in chain.joints]) * v
     bias = bias_forces(chain, frames, inertias, weights, v) + friction
+    output = ca.densify(ca.DM(source.axes) @ (tip_of(chain, frames) - ca.DM(_home_of(source))))
     posture = None
     if source.redundant:
         away = p["posture_damping"] * v + p["posture_stiffness"] * (q - ca.DM(source.home))
+        if _avoids(source):
+            heavier = mass + ca.diag(p["limit_avoidance"] * _spared(source, q))
+            away = _beside(ca.jacobian(output, q), heavier, away)
         posture = bias - mass @ away
     efforts = [min(joint.effort, UNLIMITED) / 100 for joint in chain.joints]
     return mechanical_system(
@@ -232,12 +285,39 @@ def chain_system(source: ChainSource) -> MechanicalSystem:
         mass=mass,
         bias=bias,
         inputs=n,
-        output=ca.densify(ca.DM(source.axes) @ (tip_of(chain, frames) - ca.DM(_home_of(source)))),
+        output=output,
         potential_energy=potential_energy(frames, weights),
         solve=solved,
         posture=posture,
         strength=tuple(efforts),
     )
+
+
+def _beside(jacobian: ca.SX, weight: ca.SX, motion: ca.SX) -> ca.SX:
+    """N a: the part of a motion that does not move the end-point, nearest to it by a weight."""
+    toward = solved(weight, ca.densify(jacobian.T))
+    return motion - toward @ solved(ca.densify(jacobian @ toward), jacobian @ motion)
+
+
+def _spared(source: ChainSource, q: ca.SX) -> ca.SX:
+    """The diagonal of B for g = 1, (n, 1); see this module's docstring."""
+    low, high = source.chain.limits
+    limited = [i for i in range(source.chain.n) if high[i] - low[i] < math.inf]
+    inertias, widths = _inertias_at_home(source)[limited], (high - low)[limited]
+    mean = float((inertias * widths**2).mean())
+    weights = ca.SX(ca.DM.zeros(source.chain.n))
+    for i, width in zip(limited, widths.tolist(), strict=True):
+        place = (2 * q[i] - low[i] - high[i]) / width
+        weights[i] = mean / width**2 * (place / ca.fmax(1 - place**2, AT_END)) ** 2
+    return weights
+
+
+def _inertias_at_home(source: ChainSource) -> Array:
+    """The diagonal of M at home, (n,)."""
+    chain, one = source.chain, ca.SX(1)
+    frames = chain_frames(chain, ca.SX(ca.DM(source.home)))
+    mass = mass_matrix(chain, frames, chain_inertias(chain, one, ca.SX(0)), one)
+    return np.diag(ca.evalf(ca.densify(mass)).full())
 
 
 @lru_cache(maxsize=64)
@@ -331,12 +411,8 @@ def _limit_stops(chain: Chain, q: ca.SX) -> tuple[StopCondition, ...]:
 
 def _posture(parameters: ChainParameters) -> dict[str, float]:
     """The gains of the posture, if the robot is redundant."""
-    if not isinstance(parameters, RedundantPlanarParameters | RedundantSpatialParameters):
-        return {}
-    return {
-        "posture_stiffness": parameters.posture_stiffness,
-        "posture_damping": parameters.posture_damping,
-    }
+    names = [name for name in POSTURE if hasattr(parameters, name)]
+    return {name: getattr(parameters, name) for name in names}
 
 
 def _reach(chain: Chain) -> float:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import hashlib
 import math
 import re
-from collections.abc import Mapping
+import shlex
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -20,23 +21,38 @@ from onpath.models.systems.chain_robot import (
     MOST_STEPS,
     chain_entry,
     chain_robot,
-    chain_system,
     output_axes,
 )
 from onpath.models.systems.drawing import Point
 from onpath.models.systems.efforts import stated
 from onpath.models.systems.file_chain import FileChain, Options
 from onpath.models.systems.guesses import Guess
-from onpath.models.systems.home_pose import chosen_pose, reachable_circle
+from onpath.models.systems.home_pose import (
+    RULES,
+    ChosenPose,
+    chosen_poses,
+    length_of,
+    reachable_circle,
+)
 from onpath.models.systems.mjcf_file import read_mjcf
-from onpath.models.systems.rigid_chain import Chain, ChainSource, chain_frames, tip_of
+from onpath.models.systems.rigid_chain import (
+    Chain,
+    ChainSource,
+    chain_frames,
+    chain_inertias,
+    mass_matrix,
+    tip_of,
+)
 from onpath.models.systems.robots import RobotEntry
 from onpath.models.systems.rows import Rows
 from onpath.models.systems.urdf_file import read_urdf
-from onpath.models.systems.xml_elements import FileFault, file_bytes, root_of
+from onpath.models.systems.xml_elements import FileFault, file_bytes, root_of, shown
 
 POSES = 100  # random ones at which masses and friction are checked
-LEAST_CIRCLE = 0.05  # [m], of paths that must be possible
+LEAST_CIRCLE = 0.015  # [m], of paths that must be possible
+ENOUGH = 0.1  # of a chain's length, radius of circles for which no other pose is tried
+LEAST_ROTOR = 1e-5  # [kg m²], of motors whose inertia is guessed
+LIGHTEST = 1e-9  # least eigenvalue of M to its largest
 LARGEST_ARMATURE = 100.0  # [kg m²]
 _STRANGE = re.compile(r"[^a-z0-9]+")
 
@@ -121,38 +137,39 @@ def _check(options: Options) -> None:
 
 
 def _made(file: Path, name: str, read: FileChain, pose: Mapping[str, float]) -> RobotFile:
-    chain, axes = read.chain, output_axes(read.chain)
-    if chain.n < len(axes):
-        raise CodedError("robot_file.few_joints", count=chain.n, needed=len(axes))
-    home = _home(chain, axes, pose)
+    axes = output_axes(read.chain)
+    if read.chain.n < len(axes):
+        raise CodedError("robot_file.single" if read.chain.n == 1 else "robot_file.two_across")
+    chosen = _homes(read.chain, axes, pose)
+    chain, rotors = _with_rotors(read.chain, chosen[0].q)
     source = ChainSource(
         name=name,
         label=file.stem[:40],
         text=f"{chain.n} joints, from {file.name}.",
         chain=chain,
-        home=tuple(home.tolist()),
+        home=tuple(chosen[0].q.tolist()),
         axes=axes,
-        guesses=read.guesses,
+        substeps=_steps(_fastest(_masses(chain, chosen[0].q), chain, 0.0)),
     )
-    source = replace(source, substeps=_substeps(source))
-    circle = reachable_circle(chain_robot(source))
+    (source, circle), home = _roomy(source, chosen)
     if circle < LEAST_CIRCLE:
         least, found = f"{1e3 * LEAST_CIRCLE:.0f}", f"{1e3 * circle:.0f}"
         raise CodedError("robot_file.circle", least=least, circle=found)
     reach = f"Its tip follows circles of up to {1e3 * circle:.0f} mm about home."
     text = " ".join([source.text, reach, *_limits_of(chain)])
-    entry = chain_entry(replace(source, text=text))
+    guesses = (*read.guesses, *_pose_guess(chain, home, pose), *rotors, *_effort_guess(chain))
+    entry = chain_entry(replace(source, text=text, guesses=guesses))
     return RobotFile(
         entry=entry,
         circle=circle,
         remarks=read.remarks,
-        guesses=read.guesses,
+        guesses=guesses,
         tips=read.tips,
     )
 
 
-def _home(chain: Chain, axes: tuple[Point, ...], pose: Mapping[str, float]) -> Array:
-    """The configuration at home: as given, and chosen where nothing is given, shape (n,)."""
+def _homes(chain: Chain, axes: tuple[Point, ...], pose: Mapping[str, float]) -> list[ChosenPose]:
+    """Configurations at home, as given, and chosen where nothing is given, best first."""
     given = {joint.name: pose[joint.name] for joint in chain.joints if joint.name in pose}
     for joint in chain.joints:
         value = given.get(joint.name, joint.low)
@@ -167,14 +184,49 @@ def _home(chain: Chain, axes: tuple[Point, ...], pose: Mapping[str, float]) -> A
             )
     if len(given) == chain.n:
         home = np.array([given[joint.name] for joint in chain.joints])
-    else:
-        home = chosen_pose(chain, axes, given)
-    if not np.isfinite(home).all():
-        raise CodedError("robot_file.no_pose")
-    values = np.linalg.svd(_slope(chain, axes, home), compute_uv=False)
-    if not values[-1] > 1e-3 * values[0]:
-        raise CodedError("robot_file.singular")
-    return home
+        values = np.linalg.svd(_slope(chain, axes, home), compute_uv=False)
+        if not values[-1] > 1e-3 * values[0]:
+            raise CodedError("robot_file.singular")
+        return [ChosenPose(home, RULES)]
+    found = chosen_poses(chain, axes, given)
+    if not found:
+        raise CodedError("robot_file.no_pose" if not given else "robot_file.singular")
+    return found
+
+
+def _roomy(
+    source: ChainSource, poses: list[ChosenPose]
+) -> tuple[tuple[ChainSource, float], ChosenPose]:
+    """The first pose around which circles are large enough, or the one with the largest, [m]."""
+    enough, best = ENOUGH * length_of(source.chain), list[tuple[ChainSource, float]]()
+    for pose in poses:
+        here = replace(source, home=tuple(pose.q.tolist()))
+        best.append((here, reachable_circle(chain_robot(here))))
+        if best[-1][1] >= enough:
+            return best[-1], pose
+    k = max(range(len(poses)), key=lambda i: best[i][1])
+    return best[k], poses[k]
+
+
+def _pose_guess(chain: Chain, home: ChosenPose, pose: Mapping[str, float]) -> Iterator[Guess]:
+    """What is said of a pose that is chosen, and of the rules that it does not keep to."""
+    free = [i for i, joint in enumerate(chain.joints) if joint.name not in pose]
+    if not free:
+        return
+    broken = "_".join(rule for rule in RULES if rule not in home.kept)
+    code = f"robot_file.guessed_pose_{broken}" if broken else "robot_file.guessed_pose"
+    values = [f"{chain.joints[i].name}={home.q[i]:.4g}" for i in free]
+    yield Guess("pose", Message(code), " ".join(f"--pose {shlex.quote(each)}" for each in values))
+
+
+def _effort_guess(chain: Chain) -> Iterator[Guess]:
+    """That motors are unlimited of which the file does not say what they can give."""
+    names = [shown(joint.name) for joint in chain.joints if math.isinf(joint.effort)]
+    if len(names) == chain.n:
+        yield Guess("effort", Message("robot_file.guessed_efforts"))
+    elif names:
+        joints = {"joints": ", ".join(names)}
+        yield Guess("effort", Message("robot_file.guessed_effort", joints))
 
 
 def _slope(chain: Chain, axes: tuple[Point, ...], q: Array) -> Array:
@@ -185,43 +237,69 @@ def _slope(chain: Chain, axes: tuple[Point, ...], q: Array) -> Array:
     return np.array(slope(q))
 
 
-def _substeps(source: ChainSource) -> int:
-    """Runge-Kutta steps per tick, for the fastest decay by friction, λ_max(M⁻¹ D).
+def _with_rotors(chain: Chain, home: Array) -> tuple[Chain, tuple[Guess, ...]]:
+    """The chain with motors whose inertia is large enough for friction and light bodies.
 
     Raises:
-        CodedError: the mass matrix is not positive definite somewhere, or no step can follow the
-            decay; the message names an armature that is large enough.
+        CodedError: no body has a mass or inertia.
     """
-    chain, system = source.chain, chain_system(source)
-    low, high = (ends.clip(-np.pi, np.pi) for ends in chain.limits)
-    share = np.random.default_rng(1).random((POSES, chain.n))
-    q = np.concatenate([[source.home], low + share * (high - low)])
-    numbers = np.array([1.0, 0.0, 0.0] + [0.0] * (system.parameters.numel() - 3))
-    found = Rows([system.q, system.parameters], ca.vec(system.mass))(q, numbers)
-    masses = found.reshape(-1, chain.n, chain.n)
-    least = np.linalg.eigvalsh(np.nan_to_num(masses))
-    if not (np.isfinite(masses).all() and (least[:, 0] > 1e-9 * least[:, -1]).all()):
+    masses = _masses(chain, home)
+    steps, light = _steps(_fastest(masses, chain, 0.0)), _too_light(masses, chain, 0.0)
+    if not np.isfinite(masses).all() or not np.abs(masses).max() > 0:
         raise CodedError("robot_file.massless", joint=_light(chain, masses))
-    damping = np.array([joint.damping for joint in chain.joints])
-
-    def fastest(armature: float) -> float:
-        return max(_decay(each + armature * np.eye(chain.n), damping) for each in masses)
-
-    steps = max(1, math.ceil(fastest(0.0) / FASTEST_DECAY))
-    if steps <= MOST_STEPS:
-        return steps
-    armature = 1e-4
-    while fastest(armature) > FASTEST_DECAY:
+    if steps <= MOST_STEPS and not light:
+        return chain, ()
+    armature = LEAST_ROTOR
+    while _fastest(masses, chain, armature) > FASTEST_DECAY or _too_light(masses, chain, armature):
         armature *= 1.25
     present = max(joint.armature for joint in chain.joints)
-    digits = f"{present + armature:.1e}"
-    enough = f"{float(digits) * 1.1:.2g}"
-    raise CodedError("robot_file.damping", decay=f"{fastest(0.0):.0f}", armature=enough)
+    enough = f"{1.1 * float(f'{present + armature:.1e}'):.2g}"
+    if float(enough) > LARGEST_ARMATURE:
+        raise CodedError("robot_file.massless", joint=_light(chain, masses))
+    bodies = [
+        replace(body, joint=replace(body.joint, armature=max(body.joint.armature, float(enough))))
+        for body in chain.bodies
+    ]
+    message = Message("robot_file.guessed_armature", {"armature": enough})
+    guess = Guess("inertia", message, f"--armature {enough}")
+    return replace(chain, bodies=tuple(bodies)), (guess,)
+
+
+def _masses(chain: Chain, home: Array) -> Array:
+    """M(q) at home and at random configurations, (POSES + 1, n, n)."""
+    q, one = ca.SX.sym("q", chain.n), ca.SX(1)
+    inertias = chain_inertias(chain, one, ca.SX(0))
+    mass = mass_matrix(chain, chain_frames(chain, q), inertias, one)
+    low, high = (ends.clip(-np.pi, np.pi) for ends in chain.limits)
+    share = np.random.default_rng(1).random((POSES, chain.n))
+    rows = np.concatenate([home[None], low + share * (high - low)])
+    return Rows([q], ca.vec(mass))(rows).reshape(-1, chain.n, chain.n)
+
+
+def _steps(decay: float) -> int:
+    """Runge-Kutta steps per tick for the fastest decay by friction."""
+    return max(1, math.ceil(min(decay / FASTEST_DECAY, 1e9)))
+
+
+def _fastest(masses: Array, chain: Chain, armature: float) -> float:
+    """λ_max(M⁻¹ D) of all configurations, [1/s], by the symmetric D^½ M⁻¹ D^½."""
+    damping = np.array([joint.damping for joint in chain.joints])
+    return max(_decay(each + armature * np.eye(chain.n), damping) for each in masses)
+
+
+def _too_light(masses: Array, chain: Chain, armature: float) -> bool:
+    """Whether M is not positive definite somewhere, or nearly so."""
+    values = np.linalg.eigvalsh(masses + armature * np.eye(chain.n))
+    return not bool((values[:, 0] > LIGHTEST * values[:, -1]).all())
 
 
 def _decay(mass: Array, damping: Array) -> float:
-    """λ_max(M⁻¹ D), [1/s], by the symmetric D^½ M⁻¹ D^½."""
+    """λ_max(M⁻¹ D), [1/s]; infinite if M is singular and there is friction."""
     root = np.sqrt(damping)
+    if not damping.any():
+        return 0.0
+    if not np.linalg.eigvalsh(mass)[0] > 0:
+        return math.inf
     return float(np.linalg.eigvalsh(root[:, None] * np.linalg.inv(mass) * root)[-1])
 
 

@@ -109,7 +109,7 @@ def test_options_that_do_not_fit_are_refused(tmp_path: Path) -> None:
     stretched = {"joint1": 0.0, "joint2": 0.0, "joint3": 0.0}
     assert code_of(refused(tmp_path, ARM, Options(pose=stretched))) == "singular"
     still = {"joint1": 0.5, "joint2": 0.5}
-    assert code_of(refused(tmp_path, ARM, Options(lock=still))) == "few_joints"
+    assert code_of(refused(tmp_path, ARM, Options(lock=still))) == "single"
 
 
 def test_files_that_are_none_or_too_large_are_refused(tmp_path: Path) -> None:
@@ -127,13 +127,19 @@ def test_files_that_are_none_or_too_large_are_refused(tmp_path: Path) -> None:
     assert refused(tmp_path, ARM.replace("</robot>", "<link")).message.arguments["line"] == 12
 
 
-def test_stiff_friction_is_refused_with_an_armature_that_suffices(tmp_path: Path) -> None:
+def test_stiff_friction_is_given_an_armature_that_suffices_and_is_said(tmp_path: Path) -> None:
+    """Its line makes the same robot, without the guess."""
     text = re.sub('damping="[^"]*"', 'damping="8"', ARM)
-    error = refused(tmp_path, text)
-    assert code_of(error) == "damping"
-    armature = float(str(error.message.arguments["armature"]))
-    entry = read_robot(tmp_path / "arm.urdf", Options(pose=POSE, armature=armature)).entry
-    assert entry.source is not None and entry.source.substeps == 1
+    (tmp_path / "arm.urdf").write_text(text, "utf-8")
+    guessed = read_robot(tmp_path / "arm.urdf", Options(pose=POSE))
+    (line,) = (guess.line for guess in guessed.guesses if guess.kind == "inertia")
+    option, value = line.split()
+    assert option == "--armature"
+    said = read_robot(tmp_path / "arm.urdf", Options(pose=POSE, armature=float(value)))
+    assert said.guesses == ()
+    sources = said.entry.source, guessed.entry.source
+    assert sources[0] is not None and sources[1] is not None and sources[0].is_as(sources[1])
+    assert sources[0].substeps == 1
 
 
 def test_a_massless_arm_is_refused_until_it_has_an_armature(tmp_path: Path) -> None:

@@ -1,0 +1,125 @@
+"""Where a robot from a file stands, if the file does not say it, and what is refused."""
+
+from __future__ import annotations
+
+import shlex
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from onpath.models.errors import CodedError
+from onpath.models.systems.file_chain import Options
+from onpath.models.systems.home_pose import length_of
+from onpath.models.systems.robot_file import RobotFile, read_robot
+from tests.support.robot_files import HEAVY, PLANAR, SEVEN, Link, urdf
+
+LEG = (
+    Link((1, 0, 0), (0.2, 0.1, 0), (0, 0.08, 0), 1.0, 0.8, 40.0, 0.1, 0.03, 0.01),
+    Link((0, 1, 0), (0, 0.08, 0), (0, 0, -0.25), 1.0, 1.5, 40.0, 0.1, 0.03, 0.01),
+    Link((0, 1, 0), (0, 0, -0.25), (0, 0, -0.25), 0.3, 2.5, 40.0, 0.1, 0.02, 0.01),
+)
+"""A leg of a quadruped whose root is its trunk."""
+
+
+def read(folder: Path, links: tuple[Link, ...], text: str = "", **options: object) -> RobotFile:
+    file = folder / "arm.urdf"
+    file.write_text(text or urdf("arm", links), "utf-8")
+    return read_robot(file, Options(**options))  # type: ignore[arg-type]
+
+
+def tip_height(found: RobotFile) -> float:
+    """The tip over the first joint at home, [m]."""
+    entry = found.entry
+    assert entry.source is not None
+    return entry.make(entry.parameters()).home[2] - entry.source.chain.bodies[0].translation[2]
+
+
+def pose_guess(found: RobotFile) -> tuple[str, str]:
+    ((code, line),) = [(g.message.code, g.line) for g in found.guesses if g.kind == "pose"]
+    return code.removeprefix("robot_file."), line
+
+
+@pytest.mark.parametrize("links", [SEVEN, HEAVY, LEG], ids=["seven", "heavy", "leg"])
+def test_a_chosen_pose_has_room_for_a_tenth_of_its_length(
+    tmp_path: Path, links: tuple[Link, ...]
+) -> None:
+    found = read(tmp_path, links)
+    assert found.entry.source is not None
+    assert found.circle >= 0.1 * length_of(found.entry.source.chain)
+
+
+def test_the_line_of_a_chosen_pose_settles_it(tmp_path: Path) -> None:
+    found = read(tmp_path, SEVEN)
+    code, line = pose_guess(found)
+    assert code == "guessed_pose"
+    words = shlex.split(line)
+    assert words[::2] == ["--pose"] * 7
+    pose = {name: float(value) for name, value in (each.split("=") for each in words[1::2])}
+    settled = read(tmp_path, SEVEN, pose=pose)
+    assert settled.guesses == ()
+    sources = found.entry.source, settled.entry.source
+    assert sources[0] is not None and sources[1] is not None
+    assert sources[1].home == pytest.approx(sources[0].home, rel=1e-3)
+
+
+def test_a_first_joint_on_the_floor_is_no_matter(tmp_path: Path) -> None:
+    """No pose can move its origin."""
+    on_floor = (replace(SEVEN[0], at=(0, 0, 0)), *SEVEN[1:])
+    assert pose_guess(read(tmp_path, on_floor))[0] == "guessed_pose"
+
+
+def test_the_tip_of_a_leg_is_below_its_hip_and_that_of_an_arm_above_the_floor(
+    tmp_path: Path,
+) -> None:
+    leg = read(tmp_path, LEG)
+    assert pose_guess(leg)[0] == "guessed_pose" and tip_height(leg) < -0.05
+    assert tip_height(read(tmp_path, SEVEN)) > -SEVEN[0].at[2]
+
+
+def test_a_rule_that_forbids_all_is_given_up_and_said(tmp_path: Path) -> None:
+    """An arm whose waist cannot turn its other joints to the front."""
+    behind = [replace(each, at=(-2 * abs(each.at[0]) - 0.9, 0, each.at[2])) for each in SEVEN[1:2]]
+    found = read(tmp_path, (replace(SEVEN[0], limit=0.3), *behind, *SEVEN[2:]))
+    assert pose_guess(found)[0] == "guessed_pose_ahead"
+
+
+def test_two_joints_draw_in_their_plane(tmp_path: Path) -> None:
+    found = read(tmp_path, PLANAR[:2])
+    assert found.entry.make(found.entry.parameters()).system.p == 2
+    assert found.circle > 0.02
+
+
+WRIST = tuple(replace(each, at=(0, 0, 0)) for each in SEVEN[:3])
+
+
+@pytest.mark.parametrize(
+    "code, links",
+    [("single", PLANAR[:1]), ("two_across", SEVEN[:2]), ("no_pose", WRIST)],
+    ids=["a single joint", "a camera's mount", "a wrist"],
+)
+def test_what_is_no_arm_is_refused_in_one_sentence(
+    tmp_path: Path, code: str, links: tuple[Link, ...]
+) -> None:
+    with pytest.raises(CodedError) as caught:
+        read(tmp_path, links)
+    assert caught.value.message.code == f"robot_file.{code}"
+    assert "--tip" in str(caught.value)
+
+
+def test_motors_without_limits_are_said_to_be_unlimited(tmp_path: Path) -> None:
+    text = urdf("arm", SEVEN)
+    none = text.replace('effort="', 'effort="0" old="')
+    some = text.replace('effort="5"', 'effort="0"')
+    for data, code in ((none, "guessed_efforts"), (some, "guessed_effort"), (text, "")):
+        found = read(tmp_path, SEVEN, data)
+        codes = [g.message.code for g in found.guesses if g.kind == "effort"]
+        assert codes == ([f"robot_file.{code}"] if code else [])
+        assert found.entry.source is not None and found.entry.source.guesses == found.guesses
+
+
+def test_the_same_file_has_the_same_pose(tmp_path: Path) -> None:
+    homes = [read(tmp_path, SEVEN).entry.source for _ in range(2)]
+    assert homes[0] is not None and homes[1] is not None
+    assert np.array_equal(homes[0].home, homes[1].home)
