@@ -17,18 +17,13 @@ import numpy as np
 from onpath.app.scene.meshes import Mesh
 from onpath.assets import asset_path
 from onpath.models.arrays import Array
+from onpath.models.systems.file_masses import INSTALL, THICKEST, THICKNESS, THINNEST
 from onpath.models.systems.rigid_chain import Body, Chain, Shape, frame_poses
+from onpath.models.systems.shape_solids import ROUND, solid_of
 
-MOST_TRIANGLES = 500_000  # of a mesh in a file
 DRAWN_TRIANGLES = 1_500  # of a body, if the mesh can be simplified
 MOST_DRAWN = 6_000  # of a body, if it cannot
-ROUND = 16  # points of a circle
 SHARP = np.radians(30.0)  # sharper edges are not smoothed
-THICKNESS = 0.045
-"""Radius of a capsule, as a share of the robot's length."""
-THINNEST, THICKEST = 0.008, 0.06  # [m]
-INSTALL = 'pip install "onpath[meshes]"'
-"""The reason if a mesh needs a library that is not installed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,7 +90,7 @@ def read_shapes(chain: Chain) -> tuple[list[Mesh | None], list[tuple[str, str]]]
         solids = list[Any]()
         for shape in shapes:
             try:
-                solids.append(_solid(shape))
+                solids.append(solid_of(shape))
             except Exception as error:  # a library may raise anything about a user's file
                 left_out.append((_name_of(shape), _reason(error)))
         mesh = _joined(solids) if solids else None
@@ -117,42 +112,6 @@ def _reason(error: Exception) -> str:
     if isinstance(error, ImportError):
         return INSTALL
     return (str(error).splitlines() or [type(error).__name__])[0][:80]
-
-
-def _solid(shape: Shape) -> Any:
-    """A shape in its body's frame.
-
-    Raises:
-        ValueError: it is empty, not finite, or has too many triangles.
-    """
-    import trimesh
-
-    x, y, z = shape.size
-    if shape.triangles is not None:
-        solid = trimesh.Trimesh(*shape.triangles, process=False)
-    elif shape.kind == "mesh":
-        path = Path(shape.file)
-        with path.open("rb") as file:  # without a resolver, it can name no other files
-            loaded = trimesh.load_mesh(file, file_type=path.suffix[1:].lower(), process=False)
-        solid = trimesh.Trimesh(loaded.vertices, loaded.faces, process=False)
-        solid.apply_scale(shape.size)
-    elif shape.kind == "box":
-        solid = trimesh.creation.box(extents=(x, y, z))
-    elif shape.kind == "sphere":
-        solid = trimesh.creation.icosphere(subdivisions=2)
-        solid.apply_scale(shape.size)
-    elif shape.kind == "capsule":
-        solid = trimesh.creation.capsule(radius=x, height=z, count=[ROUND, 6])
-    else:
-        solid = trimesh.creation.cylinder(radius=x, height=z, sections=ROUND)
-    if not 0 < len(solid.faces) <= MOST_TRIANGLES:
-        raise ValueError(f"{len(solid.faces)} triangles: expected 1 to {MOST_TRIANGLES}")
-    if not np.isfinite(solid.vertices).all() or np.abs(solid.vertices).max() > 100:
-        raise ValueError("larger than 100 m")
-    place = np.eye(4)
-    place[:3, :3], place[:3, 3] = shape.rotation, shape.translation
-    solid.apply_transform(place)
-    return solid
 
 
 def _joined(solids: list[Any]) -> Mesh | None:

@@ -1727,7 +1727,6 @@ robot_file-xml = das ist kein XML: { $reason }
 robot_file-root = die Datei eines Roboters beginnt mit <robot> (URDF) oder <mujoco> (MJCF)
 robot_file-xacro = das ist eine xacro-Datei: Rufen Sie erst xacro auf, etwa xacro arm.urdf.xacro > arm.urdf
 robot_file-without = { $what } fehlt
-robot_file-name = { $field } { $value }: Ein Name hat 1 bis 128 Buchstaben ohne Umlaute, Ziffern, _, - und .
 robot_file-numbers = { $field } { $value }: erwartet { $count ->
     [one] wird eine Zahl
    *[other] werden { $count } Zahlen
@@ -1742,11 +1741,9 @@ robot_file-many = mehr als { $most } davon
 robot_file-type = unbekannter Typ { $type }
 robot_file-outside = { $value } liegt außerhalb der Grenzen von { $low } bis { $high }
 robot_file-mass = die Masse { $value } ist negativ
-robot_file-inertia = kein Körper hat diese Trägheit: Ein Trägheitsmoment um irgendeine Achse ist negativ
 robot_file-negative = { $field } ist negativ
 robot_file-limits = die untere Grenze { $low } liegt über der oberen { $high }
 robot_file-axis = eine Achse braucht eine Richtung
-robot_file-shape = eine Form braucht positive Maße unter 100 m
 robot_file-still_tip = die Spitze bewegt sich nicht: Kein Gelenk auf dem Weg zu ihr tut es
 robot_file-no_tip = ein Glied { $tip } gibt es nicht, aber { $names }
 robot_file-no_joint = ein Gelenk { $joint } gibt es nicht, aber { $names }
@@ -1773,30 +1770,56 @@ robot_file-mujoco_ended = MuJoCo ist beim Lesen von { $file } ausgefallen: Es is
 robot_file-mujoco_warns = MuJoCo warnt: { $reason }
 robot_file-same_name = { $name } heißt schon ein anderer Roboter
 robot_file-absent_robot = diese Einstellung ist für den Roboter { $name } aus einer Datei: Starten Sie das Labor mit { $line } und mit den Optionen, mit denen es dort gestartet wurde
+robot_file-still = Gelenke ohne Weg zwischen ihren Grenzen bleiben stehen: { $names }{ $more ->
+        [0] {""}
+       *[other] {" "}und { $more } weitere
+    }
+robot_file-not_drawn = nicht gezeichnet, weil es im Ordner oder Paket des Roboters keine solche .stl-, .obj- oder .dae-Datei bis 20 MB gibt oder die Größe fehlt: { $names }{ $more ->
+        [0] {""}
+       *[other] {" "}und { $more } weitere
+    }
+robot_file-guessed_package = Netze liegen im Paket { $package }, das nicht bekannt ist
+robot_file-guessed_mass = die Datei nennt für manche Körper keine Masse: Sie gelten als Körper mit { $density } kg/m³, zusammen { $mass } kg: { $names }{ $more ->
+        [0] {""}
+       *[other] {" "}und { $more } weitere
+    }
+robot_file-guessed_mass_without = die Datei nennt für manche Körper keine Masse, und ein Paket, das ihre Netze liest, ist nicht installiert: Sie gelten als Körper mit { $density } kg/m³, zusammen { $mass } kg: { $names }{ $more ->
+        [0] {""}
+       *[other] {" "}und { $more } weitere
+    }
+robot_file-guessed_inertia = die Datei nennt Massen, aber ihre Trägheit nicht: Sie gelten als volle Körper: { $names }{ $more ->
+        [0] {""}
+       *[other] {" "}und { $more } weitere
+    }
+robot_file-repaired = die Trägheit in der Datei hat kein Körper, weil ein Hauptträgheitsmoment die Summe der anderen übersteigt; genommen wird die nächste: { $names }{ $more ->
+        [0] {""}
+       *[other] {" "}und { $more } weitere
+    }
+robot_file-mass_stated = eine Masse von { $mass } kg ist weniger, als die Datei für manche Körper nennt, { $stated } kg: Geben Sie mit --mass (in Python mass=…) mehr an
+robot_file-density_range = eine Dichte von { $value } kg/m³: erwartet wird mehr als 0, bis { $most }
+robot_file-mass_range = eine Masse von { $value } kg: erwartet wird mehr als 0, bis { $most }
+robot_file-shape = eine Form braucht eine Größe, und ein Netz eine Datei
 robot_file-guessed_tip = die Datei sagt nicht, welches Glied die Spitze ist: genommen wird { $tip }
-robot_file-guessed_free = schwebende, ebene und Kugelgelenke bleiben, wo sie sind: { $joints }{ $more ->
+robot_file-guessed_free = schwebende, ebene und Kugelgelenke bleiben, wo sie sind: { $names }{ $more ->
         [0] {""}
        *[other] {" "}und { $more } weitere
     }
-robot_file-guessed_mimic = Gelenke, die einem anderen folgen, bleiben, wo sie sind: { $joints }{ $more ->
+robot_file-guessed_mimic = Gelenke, die einem anderen folgen, bleiben, wo sie sind: { $names }{ $more ->
         [0] {""}
        *[other] {" "}und { $more } weitere
     }
-robot_file-guessed_many = höchstens { $most } Gelenke können sich auf dem Weg zur Spitze bewegen; diese bleiben, wo sie sind: { $joints }{ $more ->
+robot_file-guessed_many = höchstens 8 Gelenke können sich auf dem Weg zur Spitze bewegen; diese bleiben, wo sie sind: { $names }{ $more ->
         [0] {""}
        *[other] {" "}und { $more } weitere
     }
-robot_file-guessed_off = Gelenke abseits des Wegs zur Spitze bleiben, wo sie sind: { $joints }{ $more ->
+robot_file-guessed_off = Gelenke abseits des Wegs zur Spitze bleiben, wo sie sind: { $names }{ $more ->
         [0] {""}
        *[other] {" "}und { $more } weitere
     }
-robot_file-guessed_limits = Gelenke, für die die Datei keine Grenzen nennt oder beide mit 0, gelten als unbegrenzt: { $joints }{ $more ->
+robot_file-guessed_limits = Gelenke, für die die Datei keine Grenzen nennt oder beide mit 0, gelten als unbegrenzt: { $names }{ $more ->
         [0] {""}
        *[other] {" "}und { $more } weitere
     }
-robot_file-still = das Gelenk { $joint } hat zwischen seinen Grenzen keinen Weg und bleibt stehen
-robot_file-triangle = die Trägheit des Glieds { $link } ist ungewöhnlich: Das größte Hauptträgheitsmoment übersteigt die Summe der anderen
-robot_file-mesh_left_out = das Netz { $mesh } wird weggelassen: Es ist keine .stl-, .obj- oder .dae-Datei bis 20 MB im Ordner oder Paket des Roboters (--package NAME=ORDNER; in Python packages=…)
 robot_file-mesh_unreadable = das Netz { $mesh } wird weggelassen: { $reason }
 robot_file-refused = <{ $element }> wird nicht gelesen, weil es andere Dateien lesen, Code ausführen oder aus einem Element viele machen kann: Lass es weg, oder lade die Datei in MuJoCo und speichere sie mit einfachen Elementen
 robot_file-unknown = in <{ $parent }> gibt es kein solches Element

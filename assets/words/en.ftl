@@ -1319,7 +1319,6 @@ robot_file-xml = this is not XML: { $reason }
 robot_file-root = a robot's file begins with <robot> (URDF) or <mujoco> (MJCF)
 robot_file-xacro = this is a xacro file: run xacro first, as xacro arm.urdf.xacro > arm.urdf
 robot_file-without = { $what } is missing
-robot_file-name = { $field } { $value }: a name has 1 to 128 letters, digits, _, - and .
 robot_file-numbers = { $field } { $value }: expected { $count ->
     [one] a number
    *[other] { $count } numbers
@@ -1334,11 +1333,9 @@ robot_file-many = more than { $most } of them
 robot_file-type = unknown type { $type }
 robot_file-outside = { $value } is outside the limits from { $low } to { $high }
 robot_file-mass = the mass { $value } is negative
-robot_file-inertia = no body has this inertia: a moment of inertia about some axis is negative
 robot_file-negative = { $field } is negative
 robot_file-limits = the lower limit { $low } is above the upper limit { $high }
 robot_file-axis = an axis needs a direction
-robot_file-shape = a shape needs positive sizes below 100 m
 robot_file-still_tip = the tip does not move: no joint on the way to it does
 robot_file-no_tip = there is no link { $tip }: there are { $names }
 robot_file-no_joint = there is no joint { $joint }: there are { $names }
@@ -1365,30 +1362,56 @@ robot_file-mujoco_ended = MuJoCo has ended while it read { $file }: it crashed, 
 robot_file-mujoco_warns = MuJoCo warns: { $reason }
 robot_file-same_name = { $name } is the name of another robot
 robot_file-absent_robot = this set-up is for the robot { $name }, which comes from a file: start the lab with { $line }, and with the options that it was started with there
+robot_file-still = joints without travel between their limits stay still: { $names }{ $more ->
+        [0] {""}
+       *[other] {" "}and { $more } more
+    }
+robot_file-not_drawn = not drawn, because there is no such .stl, .obj or .dae file of up to 20 MB in the robot's folder or package, or it has no size: { $names }{ $more ->
+        [0] {""}
+       *[other] {" "}and { $more } more
+    }
+robot_file-guessed_package = meshes are in the package { $package }, which is not known
+robot_file-guessed_mass = the file states no masses of some bodies: they are taken for solids of { $density } kg/m³, together { $mass } kg: { $names }{ $more ->
+        [0] {""}
+       *[other] {" "}and { $more } more
+    }
+robot_file-guessed_mass_without = the file states no masses of some bodies, and a package that reads their meshes is not installed: they are taken for solids of { $density } kg/m³, together { $mass } kg: { $names }{ $more ->
+        [0] {""}
+       *[other] {" "}and { $more } more
+    }
+robot_file-guessed_inertia = the file states masses, but no inertia of them: they are taken for solids: { $names }{ $more ->
+        [0] {""}
+       *[other] {" "}and { $more } more
+    }
+robot_file-repaired = no body has the inertia that the file states, because a principal moment exceeds the sum of the others; the nearest one is taken: { $names }{ $more ->
+        [0] {""}
+       *[other] {" "}and { $more } more
+    }
+robot_file-mass_stated = a mass of { $mass } kg is less than what the file states for some bodies, { $stated } kg: give more with --mass (in Python, mass=…)
+robot_file-density_range = a density of { $value } kg/m³: expected more than 0, up to { $most }
+robot_file-mass_range = a mass of { $value } kg: expected more than 0, up to { $most }
+robot_file-shape = a shape needs a size, and a mesh a file
 robot_file-guessed_tip = the file does not say which link is the tip: { $tip } is taken
-robot_file-guessed_free = floating, planar and ball joints stay where they are: { $joints }{ $more ->
+robot_file-guessed_free = floating, planar and ball joints stay where they are: { $names }{ $more ->
         [0] {""}
        *[other] {" "}and { $more } more
     }
-robot_file-guessed_mimic = joints that follow another one stay where they are: { $joints }{ $more ->
+robot_file-guessed_mimic = joints that follow another one stay where they are: { $names }{ $more ->
         [0] {""}
        *[other] {" "}and { $more } more
     }
-robot_file-guessed_many = at most { $most } joints can move on the way to the tip; these stay where they are: { $joints }{ $more ->
+robot_file-guessed_many = at most 8 joints can move on the way to the tip; these stay where they are: { $names }{ $more ->
         [0] {""}
        *[other] {" "}and { $more } more
     }
-robot_file-guessed_off = joints off the way to the tip stay where they are: { $joints }{ $more ->
+robot_file-guessed_off = joints off the way to the tip stay where they are: { $names }{ $more ->
         [0] {""}
        *[other] {" "}and { $more } more
     }
-robot_file-guessed_limits = joints for which the file states no limits, or both as 0, are taken to have none: { $joints }{ $more ->
+robot_file-guessed_limits = joints for which the file states no limits, or both as 0, are taken to have none: { $names }{ $more ->
         [0] {""}
        *[other] {" "}and { $more } more
     }
-robot_file-still = the joint { $joint } has no travel between its limits, and stays still
-robot_file-triangle = the inertia of the link { $link } is unusual: the largest principal moment exceeds the sum of the others
-robot_file-mesh_left_out = the mesh { $mesh } is left out: it is not a .stl, .obj or .dae file of up to 20 MB in the robot's folder or package (--package NAME=FOLDER; in Python, packages=…)
 robot_file-mesh_unreadable = the mesh { $mesh } is left out: { $reason }
 robot_file-refused = <{ $element }> is not read, because it can read other files, run code or make many elements of one: leave it out, or load the file in MuJoCo and save it as plain elements
 robot_file-unknown = there is no such element in <{ $parent }>

@@ -11,13 +11,13 @@ from pathlib import Path
 import numpy as np
 
 from onpath.models.arrays import Array
-from onpath.models.errors import Message
+from onpath.models.errors import Argument, Message
 from onpath.models.systems.guesses import Guess
 from onpath.models.systems.rigid_chain import Body, Chain, Joint, Shape
 from onpath.models.systems.xml_elements import shown
 
 MOST_JOINTS = 8  # that move on the way to the tip
-MOST_NAMES = 8  # of joints in a message
+MOST_NAMES = 8  # of links or joints in a message
 EXACT = 1e-10  # entries of rotations this near to 0 and ±1 are set to them: files round angles
 
 
@@ -55,6 +55,7 @@ class FileChain:
         remarks: what has been left out or is unusual.
         guesses: what the file does not say.
         tips: links that may be the tip, best first, at most five; the chosen one is the first.
+        rests: what the motion depends on besides the file and the options, as text.
     """
 
     chain: Chain
@@ -62,6 +63,7 @@ class FileChain:
     remarks: tuple[Message, ...]
     guesses: tuple[Guess, ...]
     tips: tuple[str, ...]
+    rests: str = ""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -122,13 +124,17 @@ def locked_guess(code: str, joints: Sequence[str], values: Mapping[str, float]) 
         code: of its message, which names the joints.
         values: where they stay, [rad] or [m]; 0 if it is not said.
     """
-    named = ", ".join(shown(name) for name in joints[:MOST_NAMES])
-    more = len(joints) - MOST_NAMES
+    named = some_names(joints)
     line = " ".join(
         f"--lock {shlex.quote(f'{name}={values.get(name, 0.0):.6g}')}" for name in joints
     )
-    message = Message(code, {"joints": named, "more": max(0, more), "most": MOST_JOINTS})
-    return Guess("lock", message, line if more <= 0 else "")
+    return Guess("lock", Message(code, named), "" if named["more"] else line)
+
+
+def some_names(names: Sequence[str]) -> dict[str, Argument]:
+    """The first names, and how many more there are, as arguments of a message."""
+    first = ", ".join(shown(name) for name in names[:MOST_NAMES])
+    return {"names": first, "more": max(0, len(names) - MOST_NAMES)}
 
 
 def tip_guess(tip: str) -> Guess:

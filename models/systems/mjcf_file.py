@@ -32,7 +32,7 @@ from onpath.models.systems.mjcf_check import all_elements, checked_model
 from onpath.models.systems.mujoco_process import read_model
 from onpath.models.systems.rigid_chain import Chain, Joint, Shape
 from onpath.models.systems.tip_guess import MOST_TIPS, TipPlace, limb_joints, suggested_tips
-from onpath.models.systems.xml_elements import Element, FileFault, shown
+from onpath.models.systems.xml_elements import Element, FileFault, safe_name, shown
 
 FREE, BALL, SLIDE = 0, 1, 2  # types of joints in MuJoCo; 3 turns
 SPHERE, CAPSULE, ELLIPSOID, CYLINDER, BOX, MESH = range(2, 8)  # types of geoms
@@ -68,6 +68,8 @@ class _Model:
     """
 
     def __init__(self, model: Any, root: Element, options: Options) -> None:
+        for names in ("body_names", "joint_names", "site_names"):
+            setattr(model, names, [safe_name(name) for name in getattr(model, names)])
         self._model, self._root, self._options = model, root, options
         self._way = set[int]()  # bodies from the world to the tip
         self._held = dict[str, str]()  # joints on the way that are locked without being asked
@@ -144,7 +146,9 @@ class _Model:
     def _element(self, joint: str) -> Element:
         """The element of a joint; that of the whole file if it has no name."""
         named = (each for each in all_elements(self._root) if each.tag in ("joint", "freejoint"))
-        return next((each for each in named if each.values.get("name") == joint), self._root)
+        return next(
+            (each for each in named if safe_name(each.values.get("name", "")) == joint), self._root
+        )
 
     def _joint(self, i: int, name: str) -> Joint:
         model = self._model

@@ -1,18 +1,12 @@
-"""Lets MuJoCo read a model in a process of its own, which has limits of time and memory.
+"""Lets MuJoCo read a model in a process of its own, which opens no file.
 
-MuJoCo is a large library, and a file that makes it crash, hang or take all memory must end neither
-a notebook nor a lab. This module is both ends: `read_model` starts it as a program, which answers
-with plain arrays.
+This module is both ends: `read_model` starts it as a program, which answers with plain arrays.
 """
 
 from __future__ import annotations
 
 import io
 import json
-import os
-import signal
-import subprocess
-import sys
 from collections.abc import Mapping
 from contextlib import suppress
 from importlib import import_module
@@ -25,11 +19,9 @@ import msgspec
 import numpy as np
 
 from onpath.models.errors import CodedError
+from onpath.models.systems.limited_process import SECONDS, ProcessEnded, answer_of, serve
 from onpath.models.systems.xml_elements import shown
 
-SECONDS = 30  # [s] of processor time
-PATIENCE = 120.0  # [s] until the answer, on a busy machine
-MEMORY = 2 << 30  # [B]
 NAMED = {"body": "nbody", "joint": "njnt", "site": "nsite", "key": "nkey"}
 """Kinds of elements whose names are read, and what counts them."""
 FIELDS = (
@@ -47,11 +39,10 @@ FIELDS = (
 
 
 class Reading(msgspec.Struct, frozen=True):
-    """What the process reads: a model, the files that it names, and its time limit, [s]."""
+    """What the process reads: a model, and the files that it names."""
 
     text: str
     files: dict[str, bytes]
-    seconds: int
 
 
 def read_model(
@@ -72,25 +63,14 @@ def read_model(
     """
     if find_spec("mujoco") is None:
         raise CodedError("robot_file.mujoco")
-    path = os.pathsep.join(map(os.path.abspath, filter(None, sys.path)))
-    threads = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"), "1")
+    job = msgspec.msgpack.encode(Reading(text, dict(files)))
     try:
-        ended = subprocess.run(
-            [sys.executable, "-P", "-m", __name__],
-            input=msgspec.msgpack.encode(Reading(text, dict(files), seconds)),
-            capture_output=True,
-            check=True,
-            cwd=os.path.abspath(os.sep),
-            env={**os.environ, **threads, "PYTHONPATH": path},
-            timeout=PATIENCE,
-        )
-        with np.load(io.BytesIO(ended.stdout), allow_pickle=False) as answer:
+        answered = answer_of(__name__, job, seconds)
+        with np.load(io.BytesIO(answered), allow_pickle=False) as answer:
             arrays = {name: answer[name] for name in FIELDS if name in answer}
             told = json.loads(str(answer["told"]))
-    except subprocess.TimeoutExpired:
-        raise CodedError("robot_file.mujoco_slow", file=file, seconds=seconds) from None
-    except subprocess.CalledProcessError as error:
-        if error.returncode == -getattr(signal, "SIGXCPU", 0):
+    except ProcessEnded as ended:
+        if ended.slow:
             raise CodedError("robot_file.mujoco_slow", file=file, seconds=seconds) from None
         raise CodedError("robot_file.mujoco_ended", file=file) from None
     except (OSError, ValueError, KeyError, EOFError, BadZipFile):  # it ended within its answer
@@ -105,34 +85,19 @@ def _one_line(text: str) -> str:
     return shown(" ".join(text.split()), 200)
 
 
-def main() -> None:
-    """Read a job from stdin, and write the answer to stdout."""
-    answers = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)  # what the library prints must not be mixed with the answer
-    job = msgspec.msgpack.decode(sys.stdin.buffer.read(), type=Reading)
-    _limit(job.seconds)
-    arrays, told = _read(job)
+def _answer(job: bytes) -> bytes:
+    arrays, told = _read(msgspec.msgpack.decode(job, type=Reading))
     answer = io.BytesIO()
     save: Any = np.savez  # whose types do not know arrays by name
     save(answer, told=np.array(json.dumps(told)), **arrays)
-    answers.write(answer.getvalue())
-    answers.flush()
-    os._exit(0)  # without running what a damaged library would do at its end
-
-
-def _limit(seconds: int) -> None:
-    with suppress(ImportError, ValueError, OSError):  # platforms without these limits
-        import resource
-
-        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-        resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 1))
-        resource.setrlimit(resource.RLIMIT_DATA, (MEMORY, MEMORY))
+    return answer.getvalue()
 
 
 def _read(job: Reading) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
     warnings = list[str]()
     try:
         mujoco: Any = import_module("mujoco")
+        _close_files()
         mujoco.set_mju_user_warning(warnings.append)  # else they go to a file in the current folder
         model = mujoco.MjModel.from_xml_string(job.text, job.files)
     except Exception as error:
@@ -146,5 +111,13 @@ def _read(job: Reading) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
     return arrays, {"refused": "", "warnings": warnings, "names": names}
 
 
+def _close_files() -> None:
+    """From now on, this process can open no file and no connection."""
+    with suppress(ImportError, ValueError, OSError):  # platforms without this limit
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_NOFILE, (0, 0))
+
+
 if __name__ == "__main__":
-    main()
+    serve(_answer)

@@ -54,6 +54,8 @@ ENOUGH = 0.1  # of a chain's length, radius of circles for which no other pose i
 LEAST_ROTOR = 1e-5  # [kg m²], of motors whose inertia is guessed
 LIGHTEST = 1e-9  # least eigenvalue of M to its largest
 LARGEST_ARMATURE = 100.0  # [kg m²]
+LARGEST_DENSITY = 25_000.0  # [kg/m³]
+LARGEST_MASS = 100_000.0  # [kg]
 _STRANGE = re.compile(r"[^a-z0-9]+")
 
 
@@ -98,8 +100,8 @@ def read_robot(file: Path, options: Options) -> RobotFile:
     said = (sorted(options.lock.items()), sorted(options.pose.items()), options.armature)
     tip = read.tips[0] if any(guess.kind == "tip" for guess in read.guesses) else options.tip
     weighed = [(key, value) for key in ("density", "mass") if (value := getattr(options, key))]
-    key = repr((tip, *said, *weighed)).encode()
-    digest = hashlib.sha256(data + key).hexdigest()[:8]
+    key = repr((tip, *said, *weighed)) + read.rests
+    digest = hashlib.sha256(data + key.encode()).hexdigest()[:8]
     return _made(file, f"{stem}_{digest}", read, {**read.home, **options.pose})
 
 
@@ -134,6 +136,10 @@ def _check(options: Options) -> None:
     if not 0 <= options.armature <= LARGEST_ARMATURE:
         most = f"{LARGEST_ARMATURE:g}"
         raise CodedError("robot_file.armature", value=f"{options.armature:g}", most=most)
+    for name, most in (("density", LARGEST_DENSITY), ("mass", LARGEST_MASS)):
+        value = getattr(options, name)
+        if value is not None and not 0 < value <= most:
+            raise CodedError(f"robot_file.{name}_range", value=f"{value:g}", most=f"{most:g}")
 
 
 def _made(file: Path, name: str, read: FileChain, pose: Mapping[str, float]) -> RobotFile:

@@ -8,7 +8,8 @@ move against each other are one body. Source: http://wiki.ros.org/urdf/XML.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+import shlex
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +18,7 @@ from onpath.models.arrays import Array
 from onpath.models.errors import CodedError, Message
 from onpath.models.systems.file_chain import (
     MOST_JOINTS,
+    MOST_NAMES,
     FileChain,
     Group,
     Options,
@@ -24,16 +26,19 @@ from onpath.models.systems.file_chain import (
     aligned,
     exact,
     locked_guess,
+    some_names,
     tip_guess,
     turn,
 )
+from onpath.models.systems.file_masses import LinkMass, Masses, add_masses, is_dummy
 from onpath.models.systems.guesses import Guess
 from onpath.models.systems.mesh_folders import MeshFolders
 from onpath.models.systems.rigid_chain import Chain, Joint, Shape
 from onpath.models.systems.tip_guess import MOST_TIPS, TipPlace, limb_joints, suggested_tips
-from onpath.models.systems.xml_elements import Element, FileFault, shown
+from onpath.models.systems.xml_elements import Element, FileFault, safe_name, shown
 
-MOST_LINKS = 64
+MOST_LINKS = 1000
+NO_LIMIT = 1e6  # [rad], [m] or [N m], from which on a limit is none
 MESHES = (".stl", ".obj", ".dae")
 TURNING, SLIDING, STILL = ("revolute", "continuous"), ("prismatic",), ("fixed",)
 FREE = ("floating", "planar")
@@ -50,12 +55,14 @@ def read_urdf(file: Path, root: Element, options: Options) -> FileChain:
         CodedError: an option names a link or joint that does not exist.
     """
     tree = _Tree(file, root, options)
+    chain, masses = tree.chain()
     return FileChain(
-        chain=tree.chain(),
+        chain=chain,
         home={},
-        remarks=tuple(tree.remarks),
-        guesses=tuple(tree.guesses()),
+        remarks=tuple(tree.remarks()),
+        guesses=(*tree.guesses(), *masses.guesses),
         tips=tree.tips,
+        rests=masses.numbers,
     )
 
 
@@ -66,7 +73,8 @@ class _Tree:
         if root.tag != "robot":
             raise FileFault(root, Message("robot_file.root"))
         _refuse_xacro(root)
-        self.remarks = list[Message]()
+        self._still = list[str]()  # joints without travel
+        self._left_out = list[str]()  # what is not drawn
         self._folders = MeshFolders(file, options.packages, MESHES)
         self._options = options
         self._root = root
@@ -179,6 +187,13 @@ class _Tree:
             held |= dict.fromkeys(many, "robot_file.guessed_many")
         return held
 
+    def remarks(self) -> Iterator[Message]:
+        """What is left out or unusual."""
+        if self._still:
+            yield Message("robot_file.still", some_names(self._still))
+        if self._left_out:
+            yield Message("robot_file.not_drawn", some_names([*dict.fromkeys(self._left_out)]))
+
     def guesses(self) -> Iterator[Guess]:
         """What the file does not say."""
         options = self._options
@@ -204,6 +219,9 @@ class _Tree:
         ]
         if free:
             yield locked_guess("robot_file.guessed_limits", free, {})
+        for name in self._folders.missing[:MOST_NAMES]:
+            message = Message("robot_file.guessed_package", {"package": shown(name)})
+            yield Guess("package", message, f"--package {shlex.quote(safe_name(name))}=FOLDER")
 
     def _check_names(self) -> None:
         for name in (*self._options.lock, *self._options.pose):
@@ -211,16 +229,19 @@ class _Tree:
                 names = ", ".join(self._joints)
                 raise CodedError("robot_file.no_joint", joint=shown(name), names=names)
 
-    def chain(self) -> Chain:
-        """The moving bodies, from the base to the tip."""
+    def chain(self) -> tuple[Chain, Masses]:
+        """The moving bodies, from the base to the tip, and what is guessed of their masses."""
         groups, tip = [Group(self._base)], RigidTransform()
+        masses = list[list[LinkMass]]([[]])
         waiting = [(self._base, 0, RigidTransform())]
         while waiting:
             name, number, place = waiting.pop()
             if name == self._tip:
                 last, tip = number, place
                 _check_last(self._links[name], last, groups)
-            self._add_link(groups[number], self._links[name], place)
+            mass = self._link_mass(self._links[name], place, bool(number))
+            masses[number].append(mass)
+            groups[number].shapes += mass.drawn
             # the way to the tip comes last, and so is taken first
             further = self._after.get(name, [])
             for joint in sorted(further, key=lambda each: each.name() in self._way):
@@ -232,13 +253,16 @@ class _Tree:
                     continue
                 frame = RigidTransform(aligned(_axis(joint)))
                 groups.append(Group(child, moving, origin @ frame))
+                masses.append([])
                 waiting.append((child, len(groups) - 1, RigidTransform(frame.rotation.T)))
-        return Chain(
+        found = add_masses(groups, masses, tip.translation, self._options)
+        chain = Chain(
             bodies=tuple(group.body() for group in groups[1:]),
             tip=tip.translation,
             facing=tip.rotation[:, 2],
             base=tuple(groups[0].shapes),
         )
+        return chain, found
 
     def _moving(self, joint: Element) -> Joint | None:
         """The joint if it is on the way to the tip and moves; None if it is locked."""
@@ -251,7 +275,7 @@ class _Tree:
         if name in self._options.lock or name in self._held:
             return None
         if data.low == data.high:
-            self.remarks.append(Message("robot_file.still", {"joint": name}))
+            self._still.append(name)
             return None
         return data
 
@@ -275,35 +299,42 @@ class _Tree:
             return RigidTransform(translation=value * axis)
         return RigidTransform(turn(axis, value))
 
-    def _add_link(self, group: Group, link: Element, place: RigidTransform) -> None:
+    def _link_mass(self, link: Element, place: RigidTransform, moves: bool) -> LinkMass:
+        """What the file says of a link's mass, and what it draws of it, in the group's frame."""
+        drawn = [shape for shape in self._shapes(link.all("visual"), place, self._left_out)]
+        mass = LinkMass(link.name(), drawn=drawn)
         inertial = link.first("inertial")
         if inertial is not None:
-            mass, centre, inertia = self._inertial(link, inertial)
-            here = place @ centre
-            group.add(mass, here.translation, here.rotation @ inertia @ here.rotation.T)
-        for visual in link.all("visual"):
-            shape = self._shape(visual, place)
-            if shape is not None:
-                group.shapes.append(shape)
+            stated, inertia = _mass(inertial)
+            if not is_dummy(stated, inertia):
+                here = place @ _origin(inertial)
+                mass.mass, mass.centre = stated, here.translation
+                mass.inertia = here.rotation @ inertia @ here.rotation.T
+        if moves and not mass.inertia.any():
+            mass.solid = [*self._shapes(link.all("collision"), place, [])]
+        return mass
 
-    def _inertial(self, link: Element, inertial: Element) -> tuple[float, RigidTransform, Array]:
-        mass = inertial.need("mass").number("value")
-        if mass < 0:
-            raise FileFault(
-                inertial.need("mass"), Message("robot_file.mass", {"value": f"{mass:g}"})
-            )
-        element = inertial.need("inertia")
-        xx, xy, xz = (element.number(key, 0.0) for key in ("ixx", "ixy", "ixz"))
-        yy, yz, zz = (element.number(key, 0.0) for key in ("iyy", "iyz", "izz"))
-        inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-        least, middle, most = np.linalg.eigvalsh(inertia)
-        if least < -1e-6 * abs(most):
-            raise FileFault(element, Message("robot_file.inertia"))
-        if least + middle < 0.99 * most:
-            self.remarks.append(Message("robot_file.triangle", {"link": link.name()}))
-        return mass, _origin(inertial), inertia
+    def _shapes(
+        self, elements: Iterable[Element], place: RigidTransform, left_out: list[str]
+    ) -> Iterator[Shape]:
+        """The shapes of some elements; those that cannot be read are named in `left_out`."""
+        for element in elements:
+            try:
+                shape = self._shape(element, place)
+            except FileFault as fault:
+                address = fault.element.values.get("filename", f"<{fault.element.tag}>")
+                if not self._folders.is_missing(address):
+                    left_out.append(address.rsplit("/", 1)[-1])
+                continue
+            if shape is not None:
+                yield shape
 
     def _shape(self, visual: Element, place: RigidTransform) -> Shape | None:
+        """A shape; None if it is none that is known.
+
+        Raises:
+            FileFault: it is not there, or has no size.
+        """
         geometry = visual.first("geometry")
         here = place @ _origin(visual)
         for element in geometry.children if geometry is not None else ():
@@ -312,10 +343,8 @@ class _Tree:
                 x, y, z = element.numbers("scale", 3, "1 1 1")
                 address, size = element.text("filename"), (x, y, z)
                 found = self._folders.mesh(address)
-                if found is None or not any(size):
-                    left = Message("robot_file.mesh_left_out", {"mesh": shown(address)})
-                    self.remarks.append(left)
-                    return None
+                if found is None or not all(size):
+                    raise FileFault(element, Message("robot_file.shape"))
                 file = str(found)
             elif kind == "box":
                 x, y, z = element.numbers("size", 3)
@@ -356,13 +385,29 @@ def _named(root: Element, tag: str, most: int) -> dict[str, Element]:
 
 
 def _refuse_xacro(root: Element) -> None:
-    waiting = [root]
+    """Refuse what xacro would have replaced; what it has left behind, or only looks, is ignored."""
+    for element in (root, *root.children):
+        if element.tag.startswith("xacro:") and element.tag not in ("xacro:property", "xacro:arg"):
+            raise FileFault(element, Message("robot_file.xacro"))
+    waiting = [each for each in root.children if each.tag in ("link", "joint")]
     while waiting:
         element = waiting.pop()
-        values = element.values.values()
-        if element.tag.startswith("xacro:") or any("${" in v or "$(" in v for v in values):
+        if element.tag.startswith("xacro:") or any("${" in v for v in element.values.values()):
             raise FileFault(element, Message("robot_file.xacro"))
-        waiting += element.children
+        waiting += [each for each in element.children if each.tag not in ("visual", "collision")]
+
+
+def _mass(inertial: Element) -> tuple[float, Array]:
+    """The mass that a link states, and its inertia in the frame of <inertial>, (3, 3)."""
+    mass = inertial.need("mass").number("value")
+    if mass < 0:
+        raise FileFault(inertial.need("mass"), Message("robot_file.mass", {"value": f"{mass:g}"}))
+    element = inertial.first("inertia")
+    if element is None:
+        return mass, np.zeros((3, 3))
+    xx, xy, xz = (element.number(key, 0.0) for key in ("ixx", "ixy", "ixz"))
+    yy, yz, zz = (element.number(key, 0.0) for key in ("iyy", "iyz", "izz"))
+    return mass, np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
 
 
 def _check_last(link: Element, number: int, groups: list[Group]) -> None:
@@ -377,11 +422,20 @@ def _is_still(joint: Element) -> bool:
     return data.low == data.high
 
 
+def _end(limit: Element, key: str) -> float:
+    """An end of a joint's travel, which may be infinite."""
+    text = limit.values.get(key, "").strip().lower()
+    if text.lstrip("+-") in ("inf", "infinity"):
+        return float(text)
+    value = limit.number(key, 0.0, most=math.inf)
+    return value if abs(value) < NO_LIMIT else math.copysign(math.inf, value)
+
+
 def _without_limits(limit: Element | None) -> bool:
     """Whether the ends of a joint that could have some are left out, or those of an exporter."""
     if limit is None or not {"lower", "upper"} & limit.values.keys():
         return True
-    return not any(limit.number(key, 0.0) for key in ("lower", "upper", "effort", "velocity"))
+    return not any(_end(limit, key) for key in ("lower", "upper", "effort", "velocity"))
 
 
 def _joint(joint: Element, kind: str, armature: float) -> Joint:
@@ -389,11 +443,11 @@ def _joint(joint: Element, kind: str, armature: float) -> Joint:
     limit, dynamics = joint.first("limit"), joint.first("dynamics")
     low, high, effort = -math.inf, math.inf, math.inf
     if limit is not None:
-        effort = limit.number("effort", 0.0) or math.inf
+        effort = _end(limit, "effort") or math.inf
         if effort < 0:
             raise FileFault(limit, Message("robot_file.negative", {"field": "effort"}))
     if kind in ("revolute", *SLIDING) and limit is not None and not _without_limits(limit):
-        low, high = limit.number("lower", 0.0), limit.number("upper", 0.0)
+        low, high = _end(limit, "lower"), _end(limit, "upper")
         if low > high:
             raise FileFault(
                 limit, Message("robot_file.limits", {"low": f"{low:g}", "high": f"{high:g}"})

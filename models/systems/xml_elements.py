@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
 import re
 from collections.abc import Iterator
@@ -16,7 +17,7 @@ MOST_ELEMENTS = 20_000
 DEEPEST = 30  # elements within each other
 LARGEST_NUMBER = 1e9  # [SI]
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
-_NAME = re.compile(r"[A-Za-z0-9_.-]{1,128}")
+LONGEST_NAME = 128
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -65,27 +66,29 @@ class Element:
         return self.values[key]
 
     def name(self, key: str = "name") -> str:
-        """An attribute that names something.
+        """An attribute that names something, as `safe_name`.
 
         Raises:
-            FileFault: it is absent, or has other characters than letters, digits, "_", "-" and ".".
+            FileFault: it is absent or empty.
         """
-        text = self.text(key)
-        if not _NAME.fullmatch(text):
-            raise FileFault(self, Message("robot_file.name", {"field": key, "value": shown(text)}))
+        text = safe_name(self.text(key))
+        if not text:
+            raise FileFault(self, Message("robot_file.without", {"what": key}))
         return text
 
-    def number(self, key: str, default: float | None = None) -> float:
-        """An attribute that is a number.
+    def number(self, key: str, default: float | None = None, most: float = LARGEST_NUMBER) -> float:
+        """An attribute that is a number, up to `most`.
 
         Raises:
             FileFault: it is not finite, or absent without a default.
         """
         if default is not None and key not in self.values:
             return default
-        return self.numbers(key, 1)[0]
+        return self.numbers(key, 1, most=most)[0]
 
-    def numbers(self, key: str, count: int, default: str | None = None) -> tuple[float, ...]:
+    def numbers(
+        self, key: str, count: int, default: str | None = None, most: float = LARGEST_NUMBER
+    ) -> tuple[float, ...]:
         """An attribute that consists of numbers with spaces between them.
 
         Raises:
@@ -99,7 +102,7 @@ class Element:
                 Message("robot_file.numbers", {"field": key, "count": count, "value": shown(text)}),
             )
         numbers = tuple(float(word) for word in words)
-        if any(not math.isfinite(x) or abs(x) > LARGEST_NUMBER for x in numbers):
+        if any(not math.isfinite(x) or abs(x) > most for x in numbers):
             raise FileFault(self, Message("robot_file.large", {"field": key, "value": shown(text)}))
         return numbers
 
@@ -136,6 +139,18 @@ def shown(text: str, most: int = 40) -> str:
     """A text of a file as it may appear in a message, cut after `most` characters."""
     plain = "".join(c if c.isprintable() else "?" for c in text[:most])
     return plain + ("…" if len(text) > most else "")
+
+
+def safe_name(text: str) -> str:
+    """A name of a file: of one line, printable and short; as it is if it is so already.
+
+    Other names are changed and get a digest, so that different ones stay different.
+    """
+    text = text.strip()
+    if len(text) <= LONGEST_NAME and text.isprintable():
+        return text
+    digest = hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()[:8]
+    return f"{shown(text)}~{digest}"
 
 
 def file_bytes(file: Path) -> bytes:

@@ -13,6 +13,8 @@ from onpath.models.systems.urdf_file import read_urdf
 from onpath.models.systems.xml_elements import root_of
 from tests.support.robot_files import PLANAR, urdf
 
+MASS = '<inertial><mass value="0.5"/><inertia ixx="0.01" iyy="0.01" izz="0.01"/></inertial>'
+
 
 def robot(*limbs: str) -> str:
     """A file of limbs: "parent: child child …"; what begins with "-" is fixed to what is before."""
@@ -28,7 +30,11 @@ def robot(*limbs: str) -> str:
                 '<axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="9" velocity="1"/></joint>'
             )
             before = child
-    return "<robot>" + "".join(f'<link name="{name}"/>' for name in links) + "".join(joints)
+    return (
+        "<robot>"
+        + "".join(f'<link name="{name}">{MASS}</link>' for name in links)
+        + "".join(joints)
+    )
 
 
 def read(text: str, options: Options | None = None) -> FileChain:
