@@ -20,6 +20,7 @@ pytestmark = pytest.mark.thorough
 
 COURSE, _ = built_in_course()
 SIZES = ((1280, 800), (390, 844))
+SUM = "<mi>x</mi><mo>+</mo>" * 300  # wider than any page
 WIDE = """(html) => {
     const words = document.querySelector("#op-column .step.open .words")
     words.innerHTML = html
@@ -46,7 +47,7 @@ def test_every_equation_is_seen_at_once(browser: Browser, server: LabServer) -> 
     for width, height in SIZES:
         tab.page.set_viewport_size({"width": width, "height": height})
         tab.settle()
-        assert tab.page.evaluate(WIDE, f"<math display=block>{'<mi>x</mi><mo>+</mo>' * 300}</math>")
+        assert tab.page.evaluate(WIDE, f"<p class=op-text><math display=block>{SUM}</math></p>")
         for name in COURSE.lessons:
             lesson = COURSE.lesson(name, "en")
             for index, step in enumerate(lesson.steps):

@@ -68,13 +68,22 @@ CONTROLS = "button, [role=slider], select, summary, input:not([type=hidden])"
 
 
 @pytest.fixture(scope="module")
-def tab(browser: Browser, server: LabServer) -> Iterator[Tab]:
+def shared(browser: Browser, server: LabServer) -> Iterator[Tab]:
     context = browser.new_context(viewport={"width": 640, "height": 400}, device_scale_factor=2)
     tab = Tab(server, context, draws=False)
     tab.ask(c.SetRunning(False))
     yield tab
     assert tab.errors == []
     context.close()
+
+
+@pytest.fixture
+def tab(shared: Tab) -> Tab:
+    """A tab in which no drawer or sheet is open."""
+    while shared.page.locator("dialog[open], #op-panel.open").count():
+        shared.page.keyboard.press("Escape")
+        shared.settle()
+    return shared
 
 
 def is_whole(tab: Tab, within: str = "") -> None:
