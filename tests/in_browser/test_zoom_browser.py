@@ -25,9 +25,10 @@ expect.set_options(timeout=WAIT * 1e3)
 
 SIDEWAYS = """() => [document.documentElement, ...document.querySelectorAll("body *")]
     .filter((box) => box.checkVisibility() && box.scrollWidth > box.clientWidth + 1
+        && !box.matches("math[tabindex='0']")
         && ["auto", "scroll"].includes(getComputedStyle(box).overflowX))
     .map((box) => [box.outerHTML.slice(0, 150), box.scrollWidth, box.clientWidth])"""
-"""What has to be scrolled sideways."""
+"""What has to be scrolled sideways; but a wide formula may be, if keys can do it."""
 
 CUT = """() => {
     const cut = []
