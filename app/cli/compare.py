@@ -97,7 +97,7 @@ class CompareCommand:
         from onpath.models.systems.parameters import rise_of
 
         entry = self.file_options.entry_of(self.robot)
-        radius = 0.05 if self.radius is None else self.radius
+        radius = entry.radius if self.radius is None else self.radius
         if not 0.005 <= radius <= 0.12:
             raise ValueError(f"--radius {radius:g}: expected 0.005 to 0.12 m")
         if self.radius is not None and self.path is not None:

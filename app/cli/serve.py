@@ -193,9 +193,9 @@ class Serve:
 
         if self.path is None:
             return None
-        if self.path in presets():
-            return presets()[self.path]
         robot = entry.make(entry.parameters())
+        if self.path in presets():
+            return presets(robot.radius)[self.path]
         curve = curve_of("--path", self.path, robot)
         check_path(robot, curve, f"--path {path_name(self.path)}")
         if remark := path_remark(curve):

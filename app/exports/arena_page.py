@@ -221,7 +221,8 @@ def described(trial: Trial, words: Words) -> dict[str, object]:
 
 def _outline(trial: Trial) -> Array:
     """Points of the path in its plane, (n, 2), [m]."""
-    return curve_from_text(trial.path).at(np.linspace(-np.pi, np.pi, 121))
+    curve = curve_from_text(trial.path, ROBOTS[trial.robot].radius)
+    return curve.at(np.linspace(-np.pi, np.pi, 121))
 
 
 def _acting(trial: Trial) -> tuple[float, float]:

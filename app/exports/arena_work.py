@@ -9,6 +9,7 @@ from onpath.app.exports.standalone.figure_page import figure_page
 from onpath.lessons.words import Words
 from onpath.models.studies.arena import Result, Row, Trial, paths_of, result_of
 from onpath.models.studies.path_text import curve_from_text
+from onpath.models.systems.catalogue import ROBOTS
 
 Entry = tuple[Row, Trial]
 """A row of the table, and what happens to it."""
@@ -37,10 +38,11 @@ def lost(entry: Entry) -> Result:
 def figure_of(job: FigureJob) -> str:
     """The page of a figure: the robot of a trial under a law, on each of its paths."""
     values = {"torque_limit": job.trial.values["torque_limit"]}
+    radius = ROBOTS[job.trial.robot].radius
     figure = chosen(
         job.trial.robot,
         laws=[job.law],
-        paths={name: curve_from_text(name) for name in paths_of(job.trial.robot)},
+        paths={name: curve_from_text(name, radius) for name in paths_of(job.trial.robot)},
         values=values,
     )
     return figure_page(figure, Words(job.language))

@@ -78,7 +78,6 @@ class Simulation:
         self._recorder = Recorder()
         self.runs: dict[str, ClosedLoopRun] = {}
         self.law_changes = LawChanges(loop_cache, self.change_law)
-        self.presets: Mapping[str, PathDesign] = presets()
         self.running = self.resumes = True
         self.lacks_loops = self.has_to_step = False
         self._is_bent = False  # whether the path has already been bent for the next ticks
@@ -90,6 +89,11 @@ class Simulation:
         self._set_up(entry)
 
     # The robot
+
+    @property
+    def presets(self) -> Mapping[str, PathDesign]:
+        """The predefined paths of the robot."""
+        return presets(self.robot.radius)
 
     def choose_robot(self, entry: RobotEntry) -> None:
         """Choose another robot, with its previous parameters and path."""
@@ -133,7 +137,7 @@ class Simulation:
         new = RobotSettings(entry.parameters())
         parameters, editor, own = self.earlier.get(entry.name, new)
         robot, rise = entry.make(parameters), rise_of(parameters)
-        editor = editor or PathEditor(robot, self.presets["circle"], rise)
+        editor = editor or PathEditor(robot, presets(robot.radius)["circle"], rise)
         self.entry, self.editor = entry, editor
         self.parameters: Parameters = parameters
         self.robot: Robot = robot

@@ -20,6 +20,7 @@ from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curve_fit import deviation_remark
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.nearest_path import nearest_path
+from onpath.models.paths.path_design import USUAL_RADIUS
 from onpath.models.studies.path_text import curve_from_text
 from onpath.models.systems.robots import Robot
 
@@ -158,7 +159,7 @@ def curve_of(name: str, path: Any, robot: Robot | None = None) -> Curve:
     if isinstance(path, Path):
         path = f"@{path}"
     if isinstance(path, str):
-        curve = _path_in(path[1:], robot) if path.startswith("@") else _typed(path)
+        curve = _path_in(path[1:], robot) if path.startswith("@") else _typed(path, robot)
     elif isinstance(path, Curve):
         curve = path
     else:
@@ -176,9 +177,10 @@ def path_name(text: str) -> str:
     return read_reference(_without_nearest(text[1:])[0])[0].stem if text.startswith("@") else text
 
 
-def _typed(text: str) -> Curve:
+def _typed(text: str, robot: Robot | None) -> Curve:
+    radius = USUAL_RADIUS if robot is None else robot.radius
     try:
-        curve = curve_from_text(text)
+        curve = curve_from_text(text, radius)
     except ValueError:
         if re.search(r"\.[a-zA-Z]\w*( |$)", text):
             raise ValueError(f"path {text!r}: a file is given as '@{text}'") from None

@@ -29,7 +29,7 @@ def preset_label(preset: str, robot: Robot, words: Words) -> str:
 @lru_cache(maxsize=64)
 def remark_on(preset: str, robot: Robot) -> str:
     """Key of the words for a preset that is refused or crosses itself; empty for others."""
-    curve = presets()[preset].curve
+    curve = presets(robot.radius)[preset].curve
     if curve_faults(robot.margin, curve):
         return "design.refused"
     return "design.ambiguous" if ambiguities(curve) else ""

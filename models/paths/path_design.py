@@ -25,6 +25,7 @@ from onpath.models.paths.curve_fit import (
 from onpath.models.paths.curves import Curve, circle, ellipse, fourier, segment
 
 MOST_POINTS = 24
+USUAL_RADIUS = 0.05  # [m], of the predefined circle
 REACH = 0.2  # [m], largest coordinate of a control point, in absolute value
 
 
@@ -153,23 +154,23 @@ def _rounded_square(half: float = 0.05, power: float = 5.0) -> Curve:
     return along(radius[:, None] * np.column_stack([c, s]), closed=True)
 
 
-def _clover() -> Curve:
-    """r(φ) = 0.055 (1 + 0.2 cos 4φ) in polar coordinates, [m], represented exactly.
+def _clover(mean: float) -> Curve:
+    """r(φ) = r (1 + 0.2 cos 4φ) in polar coordinates, r in [m], represented exactly.
 
     cos φ cos 4φ = (cos 3φ + cos 5φ) / 2 and sin φ cos 4φ = (sin 5φ - sin 3φ) / 2 make both
     coordinates sums of harmonics.
     """
-    a, lobe = 0.055, 0.055 * 0.2 / 2
+    a, lobe = mean, mean * 0.2 / 2
     cosine, sine = np.zeros((5, 2)), np.zeros((5, 2))
     cosine[[0, 2, 4], 0] = a, lobe, lobe
     sine[[0, 2, 4], 1] = a, -lobe, lobe
     return fourier(np.zeros(2), cosine, sine)
 
 
-def _figure_eight() -> Curve:
-    """σ(θ) = (0.06 cos θ, 0.04 sin 2θ), [m]."""
-    cosine = np.array([[0.06, 0.0]])
-    return fourier(np.zeros(2), cosine, np.array([[0.0, 0.0], [0.0, 0.04]]))
+def _figure_eight(width: float, height: float) -> Curve:
+    """σ(θ) = (w cos θ, h sin 2θ), w and h in [m]."""
+    cosine = np.array([[width, 0.0]])
+    return fourier(np.zeros(2), cosine, np.array([[0.0, 0.0], [0.0, height]]))
 
 
 class Presets(Mapping[str, PathDesign]):
@@ -191,21 +192,22 @@ class Presets(Mapping[str, PathDesign]):
 
 
 @cache
-def presets(radius: float = 0.05) -> Presets:
+def presets(radius: float = USUAL_RADIUS) -> Presets:
     """The predefined paths by name.
 
     The figure of eight crosses itself: its users are warned, see models/paths/path_checks.py.
 
     Args:
-        radius: of the circle, [m]; the ellipse and the rounded square scale with it.
+        radius: of the circle, [m]; the others scale with it.
     """
+    k = radius / USUAL_RADIUS
     designs = (
         ("circle", partial(circle, radius), 8),
         ("ellipse", partial(ellipse, (1.4 * radius, 0.7 * radius)), 8),
         ("rounded square", partial(_rounded_square, radius), 12),
-        ("clover", _clover, 16),
-        ("segment", partial(segment, (-0.06, -0.02), (0.06, 0.03)), 2),
-        ("figure of eight", _figure_eight, 16),
+        ("clover", partial(_clover, 0.055 * k), 16),
+        ("segment", partial(segment, (-0.06 * k, -0.02 * k), (0.06 * k, 0.03 * k)), 2),
+        ("figure of eight", partial(_figure_eight, 0.06 * k, 0.04 * k), 16),
     )
     return Presets({name: partial(_designed, name, make, count) for name, make, count in designs})
 

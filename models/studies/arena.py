@@ -74,7 +74,7 @@ class Trial:
     def experiment(self, remedy: bool) -> Experiment:
         """The experiment of a trial."""
         plain = experiments(self.robot)["obstruction"]
-        moved = plain.along(curve_from_text(self.path), self.path)
+        moved = plain.along(curve_from_text(self.path, plain.schedule.r), self.path)
         return moved.with_values(self.settings(remedy))
 
 
@@ -211,8 +211,9 @@ def paths_of(robot: str) -> list[str]:
     Raises:
         ValueError: there is none.
     """
-    margin = ROBOTS[robot].make(ROBOTS[robot].parameters()).margin
-    paths = [each for each in PATHS if not curve_faults(margin, curve_from_text(each))]
+    known = ROBOTS[robot].make(ROBOTS[robot].parameters())
+    curves = {each: curve_from_text(each, known.radius) for each in PATHS}
+    paths = [each for each in PATHS if not curve_faults(known.margin, curves[each])]
     if not paths:
         raise ValueError(f"{robot}: it can follow none of {', '.join(PATHS)}")
     return paths
@@ -228,7 +229,8 @@ def _drawn(
     robot: str, path: str, obstruction: str, condition: str, draw: np.random.Generator
 ) -> tuple[dict[str, float], float | None]:
     """The values of a random trial, and when its obstruction ends."""
-    curve, speed = curve_from_text(path), ROBOTS[robot].parameters().speed
+    entry = ROBOTS[robot]
+    curve, speed = curve_from_text(path, entry.radius), entry.parameters().speed
     begin = float(np.round(draw.uniform(0.5, 1.5), 3))
     sign, angle = float(draw.choice((-1, 1))), float(draw.uniform(-np.pi, np.pi))
     reach, noise = float(draw.uniform(0.02, 0.04)), float(draw.integers(10_000))
@@ -267,7 +269,8 @@ def _on(robot: str, name: str) -> float:
 @lru_cache(maxsize=64)
 def _limit(robot: str, path: str) -> float:
     """The torque limit of a robot on a path: `RESERVE` times what path following needs there."""
-    plain = experiments(robot)["obstruction"].along(curve_from_text(path), path)
+    usual = experiments(robot)["obstruction"]
+    plain = usual.along(curve_from_text(path, usual.schedule.r), path)
     free = plain.with_values({"hold_from": 0, "hold_to": 0, "duration": 2, "ramp": 10})
     moved = run_under(free, "path_following")
     strength = np.array(plain.robot().system.strength)

@@ -286,7 +286,7 @@ def _position(entry: RobotEntry) -> Experiment:
         title="Experiment 1: to a place on the circle",
         entry=entry,
         parameters=entry.parameters(task="position"),
-        schedule=Schedule(duration=4.0),
+        schedule=Schedule(r=entry.radius, duration=4.0),
         start=lambda robot, r: robot.frame.lift(0.6 * r * off),
     )
 
@@ -297,7 +297,7 @@ def _obstruction(entry: RobotEntry) -> Experiment:
         title="Experiment 2: the end-point is held back for a while",
         entry=entry,
         parameters=entry.parameters(),
-        schedule=Schedule(duration=8.0, hold_from=3.0, hold_to=5.0),
+        schedule=Schedule(r=entry.radius, duration=8.0, hold_from=3.0, hold_to=5.0),
         start=lambda robot, r: robot.frame.lift(np.array([r, 0.0])),
     )
 

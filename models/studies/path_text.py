@@ -29,7 +29,7 @@ from onpath.models.paths import curves
 from onpath.models.paths.curve_fit import fitted
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.implicit_curves import implicit_curve
-from onpath.models.paths.path_design import presets
+from onpath.models.paths.path_design import USUAL_RADIUS, presets
 from onpath.models.systems.parameter_specs import MINUS, unknown_name
 
 LONGEST_TEXT = 50_000  # [characters]
@@ -44,8 +44,11 @@ FORMS: Mapping[str, tuple[tuple[int, ...], str]] = {
 }
 
 
-def curve_from_text(text: str) -> Curve:
+def curve_from_text(text: str, radius: float = USUAL_RADIUS) -> Curve:
     """The curve that a text describes, in coordinates of the path's plane.
+
+    Args:
+        radius: of the predefined circle, see `presets`.
 
     Raises:
         ValueError: the text is too long, names no path, or its numbers do not make one.
@@ -53,7 +56,7 @@ def curve_from_text(text: str) -> Curve:
     if len(text) > LONGEST_TEXT:
         raise ValueError(f"path: the text has more than {LONGEST_TEXT} characters")
     if text.strip() in presets():
-        return presets()[text.strip()].curve
+        return presets(radius)[text.strip()].curve
     if text.lstrip().startswith(("{", "[")):
         return _from_json(text)
     if text.lstrip().startswith(IMPLICIT):

@@ -387,6 +387,7 @@ def chain_robot(source: ChainSource) -> Robot:
         drawing=_drawing(source),
         substeps=source.substeps,
         chain=chain,
+        radius=source.radius,
     )
 
 

@@ -149,6 +149,7 @@ class ChainSource:
         axes: directions of its outputs in the frame of the base, p of them.
         substeps: see `Robot.substeps`.
         guesses: what its file does not say.
+        radius: see `Robot.radius`.
     """
 
     name: str
@@ -159,6 +160,7 @@ class ChainSource:
     axes: tuple[Point, ...]
     substeps: int = 1
     guesses: tuple[Guess, ...] = ()
+    radius: float = 0.05
 
     @property
     def redundant(self) -> bool:

@@ -16,6 +16,7 @@ import numpy as np
 from onpath.assets import asset_path
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError, Message
+from onpath.models.paths.path_design import USUAL_RADIUS
 from onpath.models.systems.chain_robot import (
     FASTEST_DECAY,
     MOST_STEPS,
@@ -50,6 +51,7 @@ from onpath.models.systems.xml_elements import FileFault, file_bytes, root_of, s
 
 POSES = 100  # random ones at which masses and friction are checked
 LEAST_CIRCLE = 0.015  # [m], of paths that must be possible
+WITHIN = 0.8  # of the largest circle, radius of the predefined one of a small robot
 ENOUGH = 0.1  # of a chain's length, radius of circles for which no other pose is tried
 LEAST_ROTOR = 1e-5  # [kg m²], of motors whose inertia is guessed
 LIGHTEST = 1e-9  # least eigenvalue of M to its largest
@@ -164,7 +166,8 @@ def _made(file: Path, name: str, read: FileChain, pose: Mapping[str, float]) -> 
     reach = f"Its tip follows circles of up to {1e3 * circle:.0f} mm about home."
     text = " ".join([source.text, reach, *_limits_of(chain)])
     guesses = (*read.guesses, *_pose_guess(chain, home, pose), *rotors, *_effort_guess(chain))
-    entry = chain_entry(replace(source, text=text, guesses=guesses))
+    radius = USUAL_RADIUS if circle >= USUAL_RADIUS else WITHIN * circle
+    entry = chain_entry(replace(source, text=text, guesses=guesses, radius=round(radius, 3)))
     return RobotFile(
         entry=entry,
         circle=circle,

@@ -90,6 +90,7 @@ class Robot:
         grip: the springs by which a hand, a brake and a wall act on its end-point.
         shared: the robot whose loops it shares, because they differ in `frame.numbers` only.
         chain: the bodies that it is made of, which are drawn; None: its bars are drawn.
+        radius: of the circle among its predefined paths, which are smaller for a small robot, [m].
     """
 
     system: MechanicalSystem
@@ -108,6 +109,7 @@ class Robot:
     grip: Grip = _GRIP
     shared: Robot | None = None
     chain: Chain | None = None
+    radius: float = 0.05
 
     @property
     def name(self) -> str:
@@ -420,6 +422,11 @@ class RobotEntry:
     def _text(self) -> str:
         """What the robot is, and what is guessed about it."""
         return " ".join([self.text, *guess_sentences(self.guesses)])
+
+    @property
+    def radius(self) -> float:
+        """See `Robot.radius`."""
+        return self.make(self.parameters()).radius
 
     def keeps_states(self, before: Parameters, now: Parameters) -> bool:
         """Whether two sets of parameters give the same robot apart from those in `goes_on`."""

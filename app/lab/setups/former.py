@@ -21,7 +21,6 @@ from onpath.models.closed_loop.lab_settings import settings_of_start
 from onpath.models.closed_loop.start import ON_PATH
 from onpath.models.control.settable import specs
 from onpath.models.errors import Message
-from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameter_specs import FORMER_NAMES
 
@@ -152,7 +151,7 @@ def with_paths_of_today(setup: Setup) -> tuple[Setup, tuple[Message, ...]]:
         ValueError: the set-up is impossible for another reason.
     """
     robots, messages = dict(setup.robots), list[Message]()
-    for name, wanted in planned(setup, presets()).items():
+    for name, wanted in planned(setup).items():
         if reasons := wanted.path_faults:
             kept = robots.get(name, RobotSetup())
             robots[name] = msgspec.structs.replace(kept, path=Path(), settings=_on_path(kept))

@@ -31,7 +31,7 @@ from onpath.models.errors import CodedError, Message
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curve_fit import closed_through, control_points, open_through
 from onpath.models.paths.curves import Curve, from_terms, terms_of
-from onpath.models.paths.path_design import MOST_POINTS, REACH, PathDesign
+from onpath.models.paths.path_design import MOST_POINTS, REACH, PathDesign, presets
 from onpath.models.systems.catalogue import ROBOTS, RobotEntry
 from onpath.models.systems.parameter_specs import NOTHING, unknown_name
 from onpath.models.systems.parameters import Parameters
@@ -70,11 +70,8 @@ class Wanted:
         return raised(self.design.curve, self.parameters)
 
 
-def planned(setup: Setup, paths: Mapping[str, PathDesign]) -> dict[str, Wanted]:
+def planned(setup: Setup) -> dict[str, Wanted]:
     """The robots of a set-up, by name; does not check whether a robot can follow its path.
-
-    Args:
-        paths: the presets.
 
     Raises:
         ValueError: an unknown name, a number out of range, points that do not form a path, or a
@@ -84,12 +81,12 @@ def planned(setup: Setup, paths: Mapping[str, PathDesign]) -> dict[str, Wanted]:
     own_settings(setup.settings)
     robots = dict(setup.robots)
     robots.setdefault(setup.robot, RobotSetup())
-    wanted = {name: wanted_robot(name, robot, paths) for name, robot in robots.items()}
+    wanted = {name: wanted_robot(name, robot) for name, robot in robots.items()}
     checked_laws(setup.laws, wanted[setup.robot].entry)
     return wanted
 
 
-def wanted_robot(name: str, robot: RobotSetup, paths: Mapping[str, PathDesign]) -> Wanted:
+def wanted_robot(name: str, robot: RobotSetup) -> Wanted:
     """One robot of a set-up; see `planned`."""
     if is_absent(name):
         file, tip = (shown(text, LONGEST_WORD) for text in (robot.file, robot.tip))
@@ -103,7 +100,7 @@ def wanted_robot(name: str, robot: RobotSetup, paths: Mapping[str, PathDesign]) 
     return Wanted(
         entry=ROBOTS[name],
         parameters=parameters,
-        design=_design(robot.path, paths),
+        design=_design(robot.path, presets(ROBOTS[name].radius)),
         own=own_settings(robot.settings, of_robot=True),
     )
 

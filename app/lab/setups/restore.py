@@ -18,9 +18,9 @@ def restore(simulation: Simulation, setup: Setup) -> None:
     Raises:
         ValueError: the set-up is impossible; the simulation is unchanged.
     """
-    wanted = planned(setup, simulation.presets)
+    wanted = planned(setup)
     for name in (simulation.entry.name, *simulation.earlier):
-        wanted.setdefault(name, wanted_robot(name, RobotSetup(), simulation.presets))
+        wanted.setdefault(name, wanted_robot(name, RobotSetup()))
     for robot in wanted.values():
         if reasons := robot.path_faults:
             raise CodedError("error.cannot_follow", robot=robot.entry.label, reasons=reasons)

@@ -18,7 +18,6 @@ from onpath.models.control.laws.own import is_text
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.control.settable import specs
 from onpath.models.control.sides import checked_laws
-from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameter_specs import FORMER_NAMES
 
@@ -48,7 +47,7 @@ def from_data(data: Any) -> Setup:
     robots = brought_up(stored.robots, stored.defaults)
     fields: dict[str, Any] = {name: getattr(stored, name) for name in Setup.__struct_fields__}
     setup = Setup(**{**fields, "robots": robots})
-    entry = planned(setup, presets())[setup.robot].entry
+    entry = planned(setup)[setup.robot].entry
     return msgspec.structs.replace(setup, laws=checked_laws(setup.laws, entry))
 
 

@@ -10,6 +10,11 @@ import numpy as np
 import pytest
 
 from onpath.models.errors import CodedError
+from onpath.models.paths.curve_faults import curve_faults
+from onpath.models.paths.path_design import USUAL_RADIUS, presets
+from onpath.models.studies.experiments import experiments
+from onpath.models.studies.path_text import curve_from_text
+from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
 from onpath.models.systems.file_chain import Options
 from onpath.models.systems.home_pose import length_of
 from onpath.models.systems.robot_file import RobotFile, read_robot
@@ -123,3 +128,32 @@ def test_the_same_file_has_the_same_pose(tmp_path: Path) -> None:
     homes = [read(tmp_path, SEVEN).entry.source for _ in range(2)]
     assert homes[0] is not None and homes[1] is not None
     assert np.array_equal(homes[0].home, homes[1].home)
+
+
+def test_the_predefined_paths_of_a_small_robot_are_smaller(tmp_path: Path) -> None:
+    """In experiments and path texts alike; they fit, and those of larger robots stay."""
+    small = [
+        replace(
+            each,
+            at=tuple(0.12 * x for x in each.at),
+            end=tuple(0.12 * x for x in each.end),
+            mass=0.1,
+        )
+        for each in SEVEN
+    ]
+    found = read(tmp_path, tuple(small))
+    robot = found.entry.make(found.entry.parameters())
+    assert found.circle < USUAL_RADIUS and 0.008 < robot.radius < found.circle
+    assert found.entry.radius == robot.radius
+    for name in ("circle", "segment"):
+        design = presets(robot.radius)[name]
+        assert curve_faults(robot.margin, design.curve) == []
+        assert np.array_equal(curve_from_text(name, robot.radius).series, design.curve.series)
+    ROBOTS[found.entry.name] = found.entry
+    try:
+        experiment = experiments(found.entry.name)["obstruction"]
+    finally:
+        del ROBOTS[found.entry.name]
+    assert experiment.schedule.r == robot.radius
+    large = read(tmp_path, SEVEN).entry
+    assert large.radius == USUAL_RADIUS == FIVE_BAR.radius
