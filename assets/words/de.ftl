@@ -1725,7 +1725,7 @@ robot_file-elements = mehr als { $most } Elemente oder mehr als { $deepest } ine
 robot_file-doctype = ein Dokumenttyp wird nicht angenommen, weil er Entities definieren kann: Löschen Sie ihn
 robot_file-xml = das ist kein XML: { $reason }
 robot_file-root = die Datei eines Roboters beginnt mit <robot> (URDF) oder <mujoco> (MJCF)
-robot_file-xacro = das ist eine xacro-Datei: Rufen Sie erst xacro auf, etwa xacro arm.urdf.xacro > arm.urdf
+robot_file-xacro = das ist eine xacro-Datei: Ihr Name muss mit .xacro enden, und xacro installiert sein: pip install "onpath[xacro]"
 robot_file-without = { $what } fehlt
 robot_file-numbers = { $field } { $value }: erwartet { $count ->
     [one] wird eine Zahl
@@ -1799,6 +1799,11 @@ robot_file-mass_stated = eine Masse von { $mass } kg ist weniger, als die Datei 
 robot_file-density_range = eine Dichte von { $value } kg/m³: erwartet wird mehr als 0, bis { $most }
 robot_file-mass_range = eine Masse von { $value } kg: erwartet wird mehr als 0, bis { $most }
 robot_file-shape = eine Form braucht eine Größe, und ein Netz eine Datei
+robot_file-no_xacro = { $file } ist eine xacro-Datei, und die braucht xacro: pip install "onpath[xacro]"
+robot_file-xacro_ended = xacro wurde beim Auswerten von { $file } beendet: Es brauchte zu lange oder zu viel Speicher
+robot_file-xacro_refused = xacro kann { $file } nicht auswerten: { $reason }
+robot_file-xacro_ran = { $file } ist ein Programm: xacro hat seine Ausdrücke ausgeführt, in einem Prozess mit Grenzen
+robot_file-include = { $file } lässt sich nicht einbinden: Es ist keine .xml-Datei im Ordner oder Paket des Roboters (--package NAME=ORDNER; in Python packages=…), oder sie wird zweimal eingebunden
 robot_file-guessed_tip = die Datei sagt nicht, welches Glied die Spitze ist: genommen wird { $tip }
 robot_file-guessed_free = schwebende, ebene und Kugelgelenke bleiben, wo sie sind: { $names }{ $more ->
         [0] {""}

@@ -1317,7 +1317,7 @@ robot_file-elements = more than { $most } elements, or more than { $deepest } ne
 robot_file-doctype = a document type is not accepted, because it can define entities: delete it
 robot_file-xml = this is not XML: { $reason }
 robot_file-root = a robot's file begins with <robot> (URDF) or <mujoco> (MJCF)
-robot_file-xacro = this is a xacro file: run xacro first, as xacro arm.urdf.xacro > arm.urdf
+robot_file-xacro = this is a xacro file: let its name end with .xacro, and install xacro: pip install "onpath[xacro]"
 robot_file-without = { $what } is missing
 robot_file-numbers = { $field } { $value }: expected { $count ->
     [one] a number
@@ -1391,6 +1391,11 @@ robot_file-mass_stated = a mass of { $mass } kg is less than what the file state
 robot_file-density_range = a density of { $value } kg/m³: expected more than 0, up to { $most }
 robot_file-mass_range = a mass of { $value } kg: expected more than 0, up to { $most }
 robot_file-shape = a shape needs a size, and a mesh a file
+robot_file-no_xacro = { $file } is a xacro file, which needs xacro: pip install "onpath[xacro]"
+robot_file-xacro_ended = xacro was ended while it expanded { $file }: it took too long, or needed too much memory
+robot_file-xacro_refused = xacro cannot expand { $file }: { $reason }
+robot_file-xacro_ran = { $file } is a program: xacro has run its expressions, in a process with limits
+robot_file-include = { $file } cannot be included: it is not an .xml file in the folder or package of the robot (--package NAME=FOLDER; in Python, packages=…), or it is included twice
 robot_file-guessed_tip = the file does not say which link is the tip: { $tip } is taken
 robot_file-guessed_free = floating, planar and ball joints stay where they are: { $names }{ $more ->
         [0] {""}

@@ -18,7 +18,8 @@ class MeshFolders:
 
     Args:
         file: of the robot. Its own folder is one, and so is its package: the nearest folder with a
-            package.xml, at most `LEVELS` above it, which is neither a home nor at the root.
+            package.xml, at most `LEVELS` above it, which is neither a home nor at the root. Without
+            such a file, it is a folder above that is called like the package.
         packages: further folders, by the names of their packages.
         kinds: endings of files that are meshes, in lower case.
 
@@ -51,6 +52,15 @@ class MeshFolders:
         except (OSError, ValueError, RuntimeError):  # not a path, or links in a circle
             return None
 
+    def allowed(self) -> tuple[Path, ...]:
+        """The folders from which files may be read."""
+        return (self._own or self._home, self._home, *self._packages.values())
+
+    def folder(self, package: str) -> Path | None:
+        """The folder of a package; None if it is not known."""
+        given = self._packages.get(package)
+        return given or next(iter(self._named(f"package://{package}/")), None)
+
     def is_missing(self, address: str) -> bool:
         """Whether a mesh is in a package of `missing`."""
         package = _package_in(address)
@@ -79,7 +89,8 @@ class MeshFolders:
         if package is None:
             return []
         name, _ = package
-        inside = [f / name for f in self._above if name and (f / name).is_dir()]
+        around = self._above if self._own else [self._home]
+        inside = [f / name for f in around if name and (f / name).is_dir()]
         called = [f for f in self._above if f.name == name]
         return [*called, *inside, *([self._own] if self._own else [])]
 

@@ -51,7 +51,7 @@ LEFT_OUT: Mapping[str, tuple[str, ...]] = {
 }
 """The elements that are left out with all that is in them."""
 REFUSED = (
-    *("include", "model", "attach", "plugin", "extension", "replicate", "composite"),
+    *("model", "attach", "plugin", "extension", "replicate", "composite"),
     *("flexcomp", "deformable", "hfield"),
 )
 _NOT_PASSED: Mapping[str, tuple[str, ...]] = {

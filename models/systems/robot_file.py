@@ -27,6 +27,7 @@ from onpath.models.systems.chain_robot import (
 from onpath.models.systems.drawing import Point
 from onpath.models.systems.efforts import stated
 from onpath.models.systems.file_chain import FileChain, Options
+from onpath.models.systems.file_reading import read_file
 from onpath.models.systems.guesses import Guess
 from onpath.models.systems.home_pose import (
     RULES,
@@ -35,7 +36,6 @@ from onpath.models.systems.home_pose import (
     length_of,
     reachable_circle,
 )
-from onpath.models.systems.mjcf_file import read_mjcf
 from onpath.models.systems.rigid_chain import (
     Chain,
     ChainSource,
@@ -82,20 +82,15 @@ class RobotFile:
 
 
 def read_robot(file: Path, options: Options) -> RobotFile:
-    """Read a robot from a URDF file, or from an MJCF file.
+    """Read a robot from a URDF file, a xacro file, or an MJCF file.
 
     Raises:
         CodedError: something in the file is refused, with its line and element, or the robot cannot
             be simulated, or an option is wrong. The message says what to do.
     """
     _check(options)
-    data = file_bytes(file)
     try:
-        root = root_of(data)
-        if root.tag == "mujoco":
-            read = read_mjcf(file, root, options)
-        else:
-            read = read_urdf(file, root, options)
+        read, data = read_file(file, options)
     except FileFault as fault:
         raise fault.in_file(file) from None
     stem = _STRANGE.sub("_", file.stem.lower()).strip("_")[:24] or "robot"

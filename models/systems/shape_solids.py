@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -21,17 +22,14 @@ def solid_of(shape: Shape) -> Any:
         ValueError: it is empty, not finite, or has too many triangles.
         Exception: whatever a library raises about a user's file.
     """
-    import trimesh
-
+    trimesh: Any = import_module("trimesh")  # whose types are incomplete
     x, y, z = shape.size
-    solid: Any
     if shape.triangles is not None:
         solid = trimesh.Trimesh(*shape.triangles, process=False)
     elif shape.kind == "mesh":
         path = Path(shape.file)
         with path.open("rb") as file:  # without a resolver, it can name no other files
-            load: Any = trimesh.load_mesh
-            loaded = load(file, file_type=path.suffix[1:].lower(), process=False)
+            loaded = trimesh.load_mesh(file, file_type=path.suffix[1:].lower(), process=False)
         solid = trimesh.Trimesh(loaded.vertices, loaded.faces, process=False)
         solid.apply_scale(shape.size)
     elif shape.kind == "box":
