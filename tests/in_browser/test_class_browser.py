@@ -25,7 +25,7 @@ from tests.support.axe import violations
 from tests.support.browser import Tab, wait_for
 
 LESSON = "01-path-or-timetable"
-HOSTILE = "<img src=x onerror=1>"
+NAMES = ("Ada", "<img src=x onerror=1>")
 SMALLEST = """() => Math.min(...[...document.querySelectorAll(".op-class *")]
     .filter(each => each.checkVisibility())
     .filter(each => [...each.childNodes].some(node => node.nodeType === 3 && node.data.trim()))
@@ -35,6 +35,7 @@ IN_SIGHT = """box => {
     const {left, top, width, height} = box.getBoundingClientRect()
     return box.contains(document.elementFromPoint(left + width / 2, top + height / 2))
 }"""
+CLASS = re.compile("^(Class|Klasse)$")
 WINDOWS = ((1280, 800), (800, 560), (800, 560))
 
 
@@ -49,7 +50,7 @@ class Class:
     @property
     def page(self) -> Locator:
         """What the teacher's tab shows of the class."""
-        return self.teacher.page.get_by_role("main").get_by_role("region", name="Class")
+        return self.teacher.page.get_by_role("main").get_by_role("region", name=CLASS)
 
     def open(self, tab: str) -> None:
         """Open one of the tabs of the teacher's page."""
@@ -80,6 +81,11 @@ def tabs(browser: Browser) -> Iterator[Class]:
             context.add_init_script(f"localStorage['{key}'] = '{room.admit(room.key, 'lab')}'")
         made.append(Tab(server, context, draws=False, path=class_address(room.code)))
         made[-1].ask(c.SetRunning(False))
+    for student, name in zip(made[1:], NAMES, strict=True):
+        card = student.page.get_by_role("dialog", name="Class")
+        card.get_by_role("textbox", name="Nickname").fill(name)
+        card.get_by_role("button", name="Join the class").click()
+        card.wait_for(state="detached")
     yield Class(room, made[0], made[1:])
     assert [tab.errors for tab in made] == [[], [], []]
     for tab in made:
@@ -106,12 +112,7 @@ def smallest(page: Page) -> float:
 
 def test_a_class_joins_is_frozen_led_and_watched_and_its_record_comes_down(tabs: Class) -> None:
     teacher, (first, second) = tabs.page, tabs.students
-    for student, name in zip(tabs.students, ("Ada", HOSTILE), strict=True):
-        card = student.page.get_by_role("dialog", name="Class")
-        card.get_by_role("textbox", name="Nickname").fill(name)
-        card.get_by_role("button", name="Join the class").click()
-        card.wait_for(state="detached")
-    for name in ("Ada", HOSTILE):
+    for name in NAMES:
         teacher.get_by_role("cell", name=name, exact=True).wait_for()
     assert tabs.teacher.page.locator("img[src=x]").count() == 0
 
@@ -156,16 +157,6 @@ def test_a_class_joins_is_frozen_led_and_watched_and_its_record_comes_down(tabs:
     assert len(tabs.room.members()) == 2
 
 
-@pytest.mark.thorough
-def test_a_projection_shows_no_name(tabs: Class) -> None:
-    tabs.open("Predictions")
-    present(tabs, True)
-    assert "Ada" not in tabs.page.inner_text()
-    tabs.open("Class")
-    assert "Ada" in tabs.page.inner_text()
-    present(tabs, False)
-
-
 PROJECTORS = [(1280, 800), (1366, 768), (1920, 1080)]
 SHARE = 0.55  # of a projector's width that the robots have at least
 STAGE = """() => [...document.querySelectorAll("canvas[data-engine]")]
@@ -173,15 +164,23 @@ STAGE = """() => [...document.querySelectorAll("canvas[data-engine]")]
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("size", PROJECTORS)
-@pytest.mark.parametrize("step", [0, 1, 4])  # a text, a drawing and options
 def test_a_projection_is_stage_numbers_and_question_beside_what_leads_the_class(
-    tabs: Class, size: tuple[int, int], step: int
+    tabs: Class,
 ) -> None:
-    page, room = tabs.teacher.page, tabs.room
-    page.set_viewport_size({"width": size[0], "height": size[1]})
+    tabs.open("Class")
+    assert NAMES[0] in tabs.page.inner_text()
     present(tabs, True)
-    asked = prediction_at(tabs.students[0].lab.lessons.course.lesson(LESSON, "en"), step)
+    for width, height in PROJECTORS:
+        tabs.teacher.page.set_viewport_size({"width": width, "height": height})
+        for step in (0, 1, 4):  # a text, a drawing and options
+            assert_projected(tabs, step)
+    present(tabs, False)
+
+
+def assert_projected(tabs: Class, step: int) -> None:
+    """Assert that all of a step that a class looks at is seen, in large type and without names."""
+    page, room = tabs.teacher.page, tabs.room
+    asked = prediction_at(tabs.teacher.lab.lessons.course.lesson(LESSON, "en"), step)
     for visible in (False, True):
         room.show(Display(LESSON, step, shown=visible))
         picture = tabs.page.locator(".op-class").filter(visible=True)
@@ -210,8 +209,7 @@ def test_a_projection_is_stage_numbers_and_question_beside_what_leads_the_class(
             assert box["y"] + box["height"] <= strip["y"] + strip["height"] + 1
             number = reading.locator(".number")
             assert number.evaluate("each => parseFloat(getComputedStyle(each).fontSize)") >= 60
-        assert "Ada" not in tabs.page.inner_text()
-    present(tabs, False)
+        assert NAMES[0] not in tabs.page.inner_text()
 
 
 HIDDEN = """box => [...box.querySelectorAll("p:first-child, div:has(> b)")].filter(each => {
@@ -221,26 +219,24 @@ HIDDEN = """box => [...box.querySelectorAll("p:first-child, div:has(> b)")].filt
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("language", ["en", "de"])
-def test_every_question_of_the_course_fits_on_a_projection(tabs: Class, language: str) -> None:
+def test_every_question_of_the_course_fits_on_a_projection(tabs: Class) -> None:
     page, room, course = tabs.teacher.page, tabs.room, tabs.teacher.lab.lessons.course
     page.set_viewport_size({"width": 1366, "height": 768})
     present(tabs, True)
-    tabs.teacher.ask(c.SetLanguage(language))
-    page.locator(f"html[lang={language}]").wait_for()
     picture = tabs.page.locator(".op-class").filter(visible=True).first
-    for name in [*course.lessons, *course.tests]:
-        lesson = course.lesson(name, language)
-        for step in range(len(lesson.steps)):
-            asked = prediction_at(lesson, step)
-            if asked is not None and asked[0] == step:
-                room.show(Display(name, step))
-                told = text_of(asked[1].question)
-                wait_for(lambda told=told: picture.count() and told in picture.inner_text())
-                assert picture.evaluate(HIDDEN) == []
-                assert smallest(page) >= 24
-    tabs.teacher.ask(c.SetLanguage("en"))
-    page.locator("html[lang=en]").wait_for()
+    for language in ("de", "en"):
+        tabs.teacher.ask(c.SetLanguage(language))
+        page.locator(f"html[lang={language}]").wait_for()
+        for name in [*course.lessons, *course.tests]:
+            lesson = course.lesson(name, language)
+            for step in range(len(lesson.steps)):
+                asked = prediction_at(lesson, step)
+                if asked is not None and asked[0] == step:
+                    room.show(Display(name, step))
+                    told = text_of(asked[1].question)
+                    wait_for(lambda told=told: picture.count() and told in picture.inner_text())
+                    assert picture.evaluate(HIDDEN) == []
+                    assert smallest(page) >= 24
     present(tabs, False)
 
 
@@ -249,13 +245,9 @@ def present(tabs: Class, on: bool) -> None:
     page = tabs.teacher.page
     tabs.teacher.ask(c.Set("presenting", on))
     wait_for(lambda: page.evaluate("document.documentElement.classList.contains('op-large')") == on)
-    first = tabs.page.get_by_role("tab", name="Predictions" if on else "Class", exact=True)
-    if on:
-        wait_for(
-            lambda: tabs.page.get_by_role("tab").nth(1).get_attribute("aria-selected") == "true"
-        )
-    else:
-        wait_for(lambda: first.get_attribute("aria-selected") == "true")
+    tab = tabs.page.get_by_role("tab").nth(1 if on else 0)
+    wait_for(lambda: tab.get_attribute("aria-selected") == "true")
+    if not on:
         page.set_viewport_size({"width": WINDOWS[0][0], "height": WINDOWS[0][1]})
 
 

@@ -184,7 +184,7 @@ def opened(browser: Browser, server: LabServer, **options: Any) -> Iterator[Tab]
 def give(tab: Tab, size: tuple[int, int]) -> None:
     """Give the window a size."""
     tab.page.set_viewport_size({"width": size[0], "height": size[1]})
-    wait_for(tab._framed)
+    wait_for(tab.is_framed)
     tab.page.evaluate(THREE_FRAMES)
 
 

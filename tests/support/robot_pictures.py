@@ -30,7 +30,7 @@ def take_picture(tab: Tab, name: str) -> None:
     """Save the scene with a robot as the picture that its entry names."""
     if name != tab.simulation.entry.name:
         tab.ask(c.ChooseRobot(name))
-        wait_for(lambda: tab.is_built() and tab._framed())
+        wait_for(lambda: tab.is_built() and tab.is_framed())
     tab.ask(c.SetRunning(False))
     tab.elapse(SHOWN)
     tab.settle()

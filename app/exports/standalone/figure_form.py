@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 import msgspec
 
-from onpath.app.channel.form_messages import FormField, FormGroup, FormMessage
+from onpath.app.channel.form_messages import FormField, FormGroup, FormMessage, FormNeed
 from onpath.app.exports.standalone.figure_choice import FigureChoice
 from onpath.app.exports.standalone.setting_places import page_values
 from onpath.app.view.forms import choice_field, setting_field, with_limit
@@ -49,7 +49,7 @@ def setting_of(figure: FigureChoice, name: str, words: Words, place: str = "figu
     """The field of a parameter or gain, with the options that the page has."""
     parameters, spec = figure.parameters, specs(figure.parameters)[name]
     usual = parameters if place == "figure" else type(parameters)()
-    return setting_field(
+    field = setting_field(
         name,
         spec,
         words,
@@ -58,6 +58,17 @@ def setting_of(figure: FigureChoice, name: str, words: Words, place: str = "figu
         guesses=figure.entry.guesses,
         options=figure.remade.get(name, page_values(figure, name, {}) if spec.options else ()),
     )
+    needs = [need for need in field.needs if not any(_holds(figure, each) for each in need)]
+    return msgspec.structs.replace(field, needs=tuple(needs))
+
+
+def _holds(figure: FigureChoice, need: FormNeed) -> bool:
+    """Whether a condition always holds on the page, which then does not know its setting."""
+    changing = (*figure.sliders, *figure.changing, *figure.remade)
+    if need.name in changing or need.name not in specs(figure.parameters):
+        return False
+    value = value_of(figure.parameters, need.name)
+    return value in need.of if need.of else bool(value) and value != "off"
 
 
 def _choices_of_path(figure: FigureChoice, words: Words) -> list[FormField]:

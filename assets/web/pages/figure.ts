@@ -30,6 +30,8 @@ export class Figure {
     private readonly note = made("p", "note")
     private readonly late = made("p", "late") // which moves nothing when it comes and goes
     readonly transport = new Transport(this.data, this.engine, this.data.controls, this.ended)
+    private readonly brakes = made("div", "transport brakes", this.transport.brake)
+    private readonly bar = made("div", "bar", this.transport.element, this.late)
     /** The settings that one may change; a page may put it elsewhere. */
     readonly form = new Form(this.data.form, new LocalSettings(this.simulation, () => this.changed()), this.ended)
     private pending: (() => void) | null = null // a drag to be handled before the next picture
@@ -84,6 +86,16 @@ export class Figure {
     /** Advance by a number of ticks, independently of the clock. */
     readonly advance = (ticks: number) => this.simulation.advance(ticks)
 
+    /** Put several plots where they are seen with what one sets: if the text is below the robots, in the place of the lenses,
+     * or below the form where there is no room for both. */
+    place(isWide: boolean, isTall: boolean): void {
+        const { strip, bar, brakes, data, form } = this
+        if (!data.controls.includes("plot")) return
+        if (isWide || strip.rows.length < 2) bar.after(strip.element)
+        else if (isTall) brakes.before(strip.element)
+        else (form.element.parentElement ? form.element : bar).after(strip.element)
+    }
+
     private parts(): HTMLElement[] {
         const { data, transport } = this
         const robots = this.views.map((view, i) => {
@@ -94,9 +106,9 @@ export class Figure {
         const strip = data.controls.includes("plot") ? [this.strip.element] : []
         if (strip.length) transport.element.append(this.strip.menu.element)
         return [
-            made("div", "scene", made("div", "robots", ...robots), made("div", "transport brakes", transport.brake)),
+            made("div", "scene", made("div", "robots", ...robots), this.brakes),
             this.note,
-            made("div", "bar", transport.element, this.late),
+            this.bar,
             ...strip,
             ...(this.inLesson ? [] : [this.form.element]), // a step has it in its card
             this.live,

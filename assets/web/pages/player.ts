@@ -16,6 +16,7 @@ import { StepView, type Robots } from "../parts/step"
 import { Task } from "../parts/tasks"
 import { kernelsOf, Stage } from "./stage"
 
+const TALL = 760 // [px] of a step whose robots and plots leave room for its text
 const JUDGED = 500 // [ms] between two looks at the tasks
 
 export class Player implements Robots {
@@ -45,6 +46,7 @@ export class Player implements Robots {
         addEventListener("keydown", event => this.key(event))
         addEventListener("resize", () => {
             this.view?.place()
+            this.placePlots()
             this.view?.formulas()
         })
         addEventListener("beforeprint", () => this.sections[0]!.before(this.head)) // above all steps
@@ -140,7 +142,12 @@ export class Player implements Robots {
         this.subdue()
         stage.figure.strip.follows(step)
         if (page.figures[step.figure]!.form.groups.length) this.view?.offer(stage.figure.form.element)
+        this.placePlots()
         stage.simulation.remake = (name, value) => void this.remake(name, value)
+    }
+
+    private placePlots(): void {
+        this.stage?.figure.place(isWide(this.section), this.section.clientHeight >= TALL)
     }
 
     /** Show another robot, with all else as it is; its run begins. */
@@ -194,7 +201,7 @@ export class Player implements Robots {
         })
         this.legend.add(section)
         const beneath = section.querySelector<HTMLElement>(".beneath")!
-        return new StepView(page, index, student, this, { section, beneath, isWide: () => getComputedStyle(section).display === "grid" })
+        return new StepView(page, index, student, this, { section, beneath, isWide: () => isWide(section) })
     }
 
     act(block: number, link: number): void {
@@ -287,4 +294,9 @@ export class Player implements Robots {
             if (happened) comparison.draw(truth)
         })
     }
+}
+
+/** Whether a step's text is beside the robots. */
+function isWide(section: HTMLElement): boolean {
+    return getComputedStyle(section).display === "grid"
 }

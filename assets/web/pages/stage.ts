@@ -42,7 +42,7 @@ export class Stage {
 
     close(): void {
         this.ended.abort()
-        this.figure.form.element.remove()
+        for (const { element } of [this.figure.form, this.figure.strip]) element.remove()
         this.into.replaceChildren()
     }
 

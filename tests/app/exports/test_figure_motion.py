@@ -16,6 +16,9 @@ from onpath.app.common.newcomer import NEWCOMER
 from onpath.app.exports.standalone.figure_choice import FigureChoice, chosen
 from onpath.app.exports.standalone.figure_page import figure_page
 from onpath.lessons.words import ENGLISH
+from onpath.models.control.law_poles import channels_of
+from onpath.models.errors import Message
+from onpath.models.paths.curve_faults import ambiguities
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
 from tests.support.figure_runs import Act, PythonFigure
@@ -41,6 +44,22 @@ ACT = """([what, value]) => {
 }"""
 LOGGED = "onpath.simulation.sides.map(side => [...side.logged()])"
 DISTANCES = "onpath.simulation.sides.map(side => side.distance)"
+TEXT = "document.body.textContent"
+CHOOSE = """([name, option]) => {
+    const select = [...document.querySelectorAll("select")].find(each => each.ariaLabel === name)
+    select.selectedIndex = [...select.options].findIndex(each => each.textContent === option)
+    select.dispatchEvent(new Event("change"))
+}"""
+THROWN = """(() => {
+    const {state, kernels} = onpath.simulation.sides[0], {q} = onpath.data.state
+    kernels.numbers[state + q[0] + q[1]] = 1e4
+})()"""
+"""A joint is thrown."""
+SPEEDS = """(() => {
+    const [begin, size] = onpath.data.log.v
+    return [...onpath.simulation.sides[0].logged().slice(begin, begin + size)]
+})()"""
+"""Speeds of the first robot's joints in the last row of its log, [rad/s]."""
 TABLE = """(() => {
     const {table, data} = onpath.simulation.followed
     return [...onpath.simulation.kernels.numbers.subarray(table, table + data.table.length)]
@@ -214,3 +233,54 @@ def test_a_heavy_arm_moves_as_in_python_and_says_that_it_exceeds_its_file(
     opened.do(("reset", None))
     assert "gave" not in opened.note
     opened.page.close()
+
+
+def test_a_path_that_crosses_itself_is_followed_with_the_lab_s_warning(tmp_path: Path) -> None:
+    with pytest.warns(UserWarning, match="crosses itself"):
+        file = onpath.figure(path="figure of eight", controls="drag").save(tmp_path / "a.html")
+    opened, rng = Opened(file), np.random.default_rng(2)
+    design = presets()["figure of eight"]
+    assert "crosses itself" in opened.note
+    seen = set[str]()
+    for index in range(len(design.points)):
+        target = design.points[index] + rng.normal(0, 0.006, 2)
+        opened.do(("move", [index, target.tolist()]), ("drop", None))
+        if opened.number("onpath.simulation.followed.fault") is None:
+            design = design.moved(index, target)
+            doubts = [each.reason.code for each in ambiguities(design.curve)]
+            assert opened.number("onpath.simulation.followed.doubts") == doubts
+            seen |= set(doubts)
+        else:
+            opened.do(("choose", 0))
+            design = presets()["figure of eight"]
+    assert seen and opened.number("complaints") == []
+    opened.page.close()
+
+
+def test_a_law_is_chosen_for_each_robot_and_its_poles_are_the_lab_s(opened: Opened) -> None:
+    channels = channels_of("path_following", choice().parameters)
+    assert not isinstance(channels, Message)
+    for channel in channels:
+        said = ENGLISH.sentence(channel.behaviour()).replace("-", "−")
+        poles = channel.pole_words().replace("-", "−")
+        assert f"{said}; poles {poles} 1/s" in opened.number(TEXT)
+    opened.page.evaluate("onpath.form.host.set('K5', 0)")
+    assert "not stable" in opened.number(TEXT)
+    for side in ("left", "right"):
+        opened.page.evaluate(CHOOSE, [f"Law, {side}", "Trajectory tracking"])
+    names = opened.number(
+        "[...document.querySelectorAll('.title > :first-child')].map(each => each.textContent)"
+    )
+    assert names == ["Trajectory tracking, left", "Trajectory tracking, right"]
+
+
+def test_why_a_robot_has_stopped_is_said_as_in_the_lab(opened: Opened) -> None:
+    opened.do(("reset", None))
+    opened.page.evaluate(THROWN)
+    opened.do(("advance", 50))
+    said = opened.note
+    assert said.startswith("Trajectory tracking stopped at 0.0 s: a joint turns faster than 100")
+    assert opened.number("onpath.simulation.sides[1].stopped") == 0
+    assert max(map(abs, opened.number(SPEEDS))) < 100  # it is seen as it was before that
+    opened.do(("reset", None))
+    assert opened.note == ""

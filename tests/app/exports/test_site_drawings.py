@@ -22,6 +22,7 @@ from onpath.models.arrays import Array
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.robots import Robot
 from tests.support.cases import drawn
+from tests.support.node_page import judging_page
 from tests.support.site_scripts import answer_of, needs_node
 
 pytestmark = needs_node
@@ -50,6 +51,8 @@ else {
 }
 console.log(JSON.stringify(drawn))
 """
+
+SHAPES = "([name, seen]) => shapesOf(name, seen)"
 
 
 def drawn_on_page(robot: str, path: str, drawings: tuple[str, ...], **more: Any) -> Any:
@@ -125,3 +128,45 @@ def test_a_step_has_the_drawings_that_it_shows_and_switches_for_all() -> None:
         switches = [each["name"] for each in data["switches"]]
         assert data["shown"] == [*scene.show] and {*scene.show} <= {*switches}
         assert ("show" in scene.controls) == (switches == [*SWITCHES])
+
+
+def test_what_a_symbol_means_is_shapes_to_scale() -> None:
+    """On a circle, wherever the robot is."""
+    page = judging_page()
+    random = np.random.default_rng(41)
+    angles = np.linspace(-np.pi, np.pi, 241)
+    for _ in range(30):
+        radius, theta = random.uniform(0.02, 0.2), random.choice(angles[1:-1])
+        middle, away = random.uniform(-0.2, 0.2, 2), random.uniform(-0.01, 0.01)
+
+        def at(angle: Any, r: float, middle: Any = middle) -> Any:
+            return middle + r * np.array([np.cos(angle), np.sin(angle)])
+
+        closest, tip = at(theta, radius), at(theta, radius - away)
+        reference = at(random.choice(angles), radius)
+        seen = {
+            "tip": tip.tolist(),
+            "closest": closest.tolist(),
+            "reference": reference.tolist(),
+            "pushed": (tip + [0.01, 0]).tolist(),
+            "outline": [at(each, radius).tolist() for each in angles],
+            "closed": True,
+            "joints": {},
+        }
+        shapes = {
+            name: [np.array(each["points"]) for each in page.evaluate(SHAPES, [name, seen])]
+            for name in ("lambda", "e", "N", "T", "theta", "K_1", "q_1")
+        }
+        np.testing.assert_allclose(shapes["lambda"], [[closest, tip]])
+        np.testing.assert_allclose(shapes["e"], [[reference, tip]])
+        np.testing.assert_allclose(shapes["K_1"], [[reference, tip]])
+        (normal,), (tangent,) = shapes["N"], shapes["T"]
+        inwards = (middle - closest) / radius  # where λ > 0
+        np.testing.assert_allclose((normal[1] - normal[0]) / 0.03, inwards, atol=0.02)
+        assert abs((tangent[1] - tangent[0]) @ inwards) < 1e-3
+        (arc,) = shapes["theta"]
+        length = np.linalg.norm(np.diff(arc, axis=0), axis=1).sum()
+        np.testing.assert_allclose(length, radius * abs(theta), rtol=0.01, atol=1e-3)
+        np.testing.assert_allclose(arc[-1], closest, atol=1e-9)
+        assert shapes["q_1"] == []  # it has no such joint
+    page.close()

@@ -9,13 +9,11 @@ from onpath.app.lab.dry_runs.course_check import lab_at, solved
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.lessons.course import BUILT_IN, REFERENCE, read_course, read_references
 from tests.support.site_scripts import needs_node, play_on_site
+from tests.support.site_tasks import ONLY_IN_LAB, ROUGH
 
 pytestmark = [pytest.mark.thorough, needs_node]
 
 COURSE = read_course([BUILT_IN])[0]
-ONLY_IN_LAB = ("excite", "excite-well")
-ROUGH = ("clover", "real-one")
-"""Here the last bits of a bent path, or of a speed limit, decide on an encoder's step."""
 
 
 @pytest.mark.parametrize("name", COURSE.lessons)

@@ -48,6 +48,19 @@ def fields_of(site: SiteStep) -> dict[str, Any]:
     return {field["name"]: field for group in groups for field in group["fields"]}
 
 
+def can_act(field: dict[str, Any], site: SiteStep) -> bool:
+    """Whether a field acts, or does so once another field of the form has another value."""
+    values = {
+        name: value for name, value in site.data["values"].items() if name not in fields_of(site)
+    }
+    return all(  # what the page does not know is as the step wants it
+        any(values[each["name"]] in each.get("of", ()) for each in need if each["name"] in values)
+        or any(each["name"] in fields_of(site) for each in need)
+        or not any(each["name"] in values for each in need)
+        for need in field.get("needs", ())
+    )
+
+
 def lacks_of(lesson: Lesson, step: Step, site: SiteStep) -> list[str]:
     """What a step has in the lab and not on the site."""
     scene = lesson.scene_at(site.number - 1)
@@ -96,6 +109,7 @@ def test_a_step_has_what_its_text_names(name: str) -> None:
             assert step.optional and lacks and all(site.data["onlyLab"].values()), where
             continue
         assert not lacks, where
+        assert all(can_act(field, site) for field in fields_of(site).values()), where
         here = {*fields_of(site), *site.figure["controls"], *site.figure["changes"]["values"]}
         for language in ("en", "de"):
             if step.kind != "predict":
