@@ -196,7 +196,7 @@ def assert_projected(tabs: Class, step: int) -> None:
         elif isinstance(asked[1], Choice):
             for option in asked[1].options:
                 line = picture.get_by_text(text_of(option.text))
-                assert line.evaluate(IN_SIGHT)
+                wait_for(lambda line=line: line.evaluate(IN_SIGHT))
         elif visible:
             wait_for(lambda: picture.locator("svg:has(text)").first.evaluate(IN_SIGHT))
         for name in (re.compile("^Next for all"), "Ask this again"):

@@ -18,8 +18,12 @@ pytest.importorskip("playwright")
 
 from playwright.sync_api import Browser
 
+from onpath.app.classroom.classroom import Classroom
+from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
 from onpath.app.server.own_part import own_part
+from onpath.app.server.server_options import ServerOptions
+from onpath.app.viser_adapter.addresses import class_address
 from onpath.app.viser_adapter.page_scripts import our_scripts
 from tests.support.own_socket import OwnSocket
 from tests.support.waiting import wait_for
@@ -305,8 +309,13 @@ class Told(dict[str, Any]):
 @pytest.fixture(scope="module")
 def told(server: LabServer) -> Told:
     """What a real lab tells a page at first."""
-    with OwnSocket(f"ws://127.0.0.1:{server.server.get_port()}") as own:
-        wait_for(lambda: own.kinds() >= {"words", "state", "path", "frame"}, LONGEST)
+    return told_by(server, "/", {"words", "state", "path", "frame"})
+
+
+def told_by(server: LabServer, path: str, kinds: set[str]) -> Told:
+    """What a server tells a page at first, with messages of some kinds."""
+    with OwnSocket(f"ws://127.0.0.1:{server.server.get_port()}{path}") as own:
+        wait_for(lambda: own.kinds() >= kinds, LONGEST)
         messages = list[str]()
         for message in own.told:
             if "achieved" in message:  # this machine may be busy just now
@@ -333,7 +342,7 @@ class Visit:
         most: float,
         away: Away | None = None,
     ) -> None:
-        context = browser.new_context()
+        context = browser.new_context(viewport=plan.get("size"))
         self.page, self.errors = context.new_page(), list[str]()
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
         self.page.clock.install(time=0)
@@ -400,6 +409,19 @@ def test_a_page_becomes_whole_by_itself(browser: Browser, told: Told) -> None:
         (0.01, Fault("data", 5.0, 1008)),
     ):
         becomes_whole(browser, told, [delay], [fault] if fault else [])
+
+
+@pytest.mark.thorough
+def test_a_student_who_joins_on_a_phone_gets_the_whole_page_however_late_it_is(
+    browser: Browser,
+) -> None:
+    room = Classroom()
+    server = LabServer("127.0.0.1", 0, LoopCache(), ServerOptions(classrooms=[room]))
+    told = told_by(server, class_address(room.code), {"words", "state", "path", "frame", "class"})
+    server.stop()
+    told["size"] = {"width": 390, "height": 844}
+    becomes_whole(browser, told, [LONGEST], [])
+    assert any('"is": "class"' in message for message in told["messages"])
 
 
 PHONE, LAPTOP, TAB = Away(10.0, 600.0), Away(10.0, 600.0, hidden=False), Away(10.0, 60.0, 10)

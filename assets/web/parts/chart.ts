@@ -57,8 +57,8 @@ export class Chart {
     /** What to do here, in the middle of an empty chart. */
     hint = ""
     limits: readonly Limit[] = []
-    /** The present values, beside the title. */
-    readings: readonly { text: string; tone: Tone }[] = []
+    /** The present values, beside the title: each after its name or, where there is no room for all names, alone. */
+    readings: readonly { name: string; value: string; tone: Tone }[] = []
     /** Whether the axis of time has its numbers here. */
     hasTimes = true
     /** Whether what acts is named, and the peak after it has its number. */
@@ -145,16 +145,18 @@ export class Chart {
         ink.textBaseline = "middle"
         ink.textAlign = "left"
         let x = 4
-        const write = (text: string, tone: Tone, font: string) => {
-            ink.font = font
-            const { width } = ink.measureText(text)
-            if (x + width > this.sheet.width && tone !== "ink") return
+        const write = (text: string, tone: Tone) => {
             ink.fillStyle = tones()[tone]
             ink.fillText(text, x, TITLE)
-            x += width + 14
+            x += ink.measureText(text).width + 14
         }
-        write(unit ? `${label} [${unit}]` : label, "ink", FONT)
-        for (const { text, tone } of this.readings) write(text, tone, BOLD)
+        ink.font = FONT
+        write(unit ? `${label} [${unit}]` : label, "ink")
+        ink.font = BOLD
+        const named = this.readings.map(({ name, value }) => `${name} ${value}`)
+        const fit = (texts: string[]) => x + texts.reduce((sum, text) => sum + ink.measureText(text).width + 14, -14) <= this.sheet.width
+        const shown = [named, this.readings.map(({ value }) => value)].find(fit) ?? []
+        shown.forEach((text, i) => write(text, this.readings[i]!.tone))
         this.boxes.push({ left: 0, right: x - 8, top: TITLE - HALF, bottom: TITLE + HALF })
         ink.font = FONT
     }

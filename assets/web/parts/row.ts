@@ -59,7 +59,7 @@ export class Row {
         chart.readings = engine.texts.map(({ name, side }, i) => {
             const values = lines.map(({ field, at }) => engine.field(sample, i, field)?.[at])
             const known = values.filter(value => value !== undefined).map(value => significantly(texts, value * scale, chart.axes))
-            return { text: `${name} ${known.join(" · ")}`, tone: `side${side}` }
+            return { name, value: known.join(" · "), tone: `side${side}` }
         })
     }
 
