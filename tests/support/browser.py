@@ -166,7 +166,7 @@ class Tab:
             self.page.get_by_role("button", name="Run", exact=True)
         ).first.wait_for()
         self.page.locator("#op-panel .field").first.wait_for(state="attached")
-        wait_for(self._framed)
+        wait_for(self.is_framed)
 
     def _listen(self) -> None:
         """Note what the page tells the server."""
@@ -189,7 +189,7 @@ class Tab:
     def _looked_at(self) -> list[ScheduledLab]:
         return [scheduled for scheduled in self.server.thread.labs if scheduled.display is not None]
 
-    def _framed(self) -> bool:
+    def is_framed(self) -> bool:
         """Whether the browser has applied the camera that the lab chose for its size."""
         camera = self.client.camera
         box = self._canvas()

@@ -19,7 +19,7 @@ from onpath.lessons.labels import parameter_label
 from onpath.lessons.words import ENGLISH
 from onpath.models.control.settable import specs, value_of
 from onpath.models.control.sides import RIGHT
-from tests.support.browser import Place, Tab, wait_for
+from tests.support.browser import THREE_FRAMES, Place, Tab, wait_for
 
 ROBOT = RIGHT
 PACE = 0.1  # [s], simulated, from key to key
@@ -153,6 +153,7 @@ class Slide:
             while high - low > 0.5:  # px
                 middle = (low + high) / 2
                 move((middle, y))
+                hands.tab.page.evaluate(THREE_FRAMES)  # a finger's moves wait for a picture
                 if hands.tab.value(self.label) < self.value:
                     low = middle
                 else:
