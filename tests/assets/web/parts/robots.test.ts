@@ -6,14 +6,14 @@ import type { RobotSheet } from "../../../../assets/web/channel/messages"
 import { OverStage } from "../../../../assets/web/parts/over_stage"
 import { chooseRobot } from "../../../../assets/web/parts/robot_sheet"
 
-const ROBOTS = ["a", "b", "c"].map(name => ({ name, label: name.toUpperCase(), text: "", differs: "", picture: "data:," }))
+const ROBOTS = ["a", "b", "c"].map(name => ({ name, label: name.toUpperCase(), text: "", differs: "", is_built: true, picture: "data:," }))
 
 /** The robots to choose from, opened by a button; returns what is chosen. */
-function opened(): { button: HTMLButtonElement; chosen: string[]; card: () => HTMLElement } {
-    const button = document.createElement("button"), chosen: string[] = []
+function opened(): { button: HTMLButtonElement; chosen: unknown[]; card: () => HTMLElement } {
+    const button = document.createElement("button"), chosen: unknown[] = []
     document.body.replaceChildren(button)
     button.focus()
-    chooseRobot(TEXTS, { robots: ROBOTS } as unknown as RobotSheet, "b", name => chosen.push(name))
+    chooseRobot(TEXTS, { robots: ROBOTS } as unknown as RobotSheet, "b", message => chosen.push(message))
     return { button, chosen, card: () => document.activeElement as HTMLElement }
 }
 
@@ -22,7 +22,7 @@ test("the present robot has the focus, keys go to another one, and the focus com
     assert.equal(card().getAttribute("aria-current"), "true")
     press(card(), "End")
     card().click()
-    assert.deepEqual(chosen, ["c"])
+    assert.deepEqual(chosen, [{ do: "ChooseRobot", name: "c" }])
     assert.ok(document.activeElement === button && !document.querySelector("dialog"))
 })
 
