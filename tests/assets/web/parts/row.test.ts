@@ -37,7 +37,7 @@ test("above a plot stand its quantity and the values of all robots, with their n
             const { name } = ROBOTS[i]!, named = text.startsWith(`${name} `)
             seen.add(named ? "named" : "values")
             const values = text.slice(named ? name.length + 1 : 0).split(" · ").map(each => Number(each.replace("\u2212", "-")))
-            values.forEach((value, j) => assert.ok(Math.abs(value - torques[i]![j]!) <= 0.05, `${text} ${torques}`))
+            values.forEach((value, j) => assert.ok(Math.abs(value - torques[i]![j]!) <= 0.05, `${text} ${torques.join("; ")}`))
             assert.ok(x + 7 * text.length <= width, `${text} ends beyond ${width}`)
         })
         assert.equal(new Set(readings.map(({ text }, i) => text.startsWith(ROBOTS[i]!.name))).size, 1)
