@@ -1744,6 +1744,8 @@ robot_file-mass = die Masse { $value } ist negativ
 robot_file-negative = { $field } ist negativ
 robot_file-limits = die untere Grenze { $low } liegt über der oberen { $high }
 robot_file-axis = eine Achse braucht eine Richtung
+robot_file-no_joints = in dieser Datei bewegt sich kein Gelenk: Sie beschreibt einen starren Körper, etwa eine Drohne ohne Arm, und nichts darin kann einer Bahn folgen
+robot_file-hand = in dieser Datei bewegen sich nur Finger: Sie beschreibt eine Hand oder einen Greifer. Laden Sie den Arm dazu, oder nennen Sie das Ende eines Fingers mit --tip (in Python tip=…)
 robot_file-still_tip = die Spitze bewegt sich nicht: Kein Gelenk auf dem Weg zu ihr tut es
 robot_file-no_tip = ein Glied { $tip } gibt es nicht, aber { $names }
 robot_file-no_joint = ein Gelenk { $joint } gibt es nicht, aber { $names }

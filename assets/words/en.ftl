@@ -1336,6 +1336,8 @@ robot_file-mass = the mass { $value } is negative
 robot_file-negative = { $field } is negative
 robot_file-limits = the lower limit { $low } is above the upper limit { $high }
 robot_file-axis = an axis needs a direction
+robot_file-no_joints = no joint of this file moves: it is one rigid body, such as a drone without an arm, and has nothing that could follow a path
+robot_file-hand = all that moves in this file are fingers: it is a hand or a gripper. Load the arm that carries it, or name a finger's end with --tip (in Python, tip=…)
 robot_file-still_tip = the tip does not move: no joint on the way to it does
 robot_file-no_tip = there is no link { $tip }: there are { $names }
 robot_file-no_joint = there is no joint { $joint }: there are { $names }

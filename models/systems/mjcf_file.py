@@ -31,7 +31,13 @@ from onpath.models.systems.guesses import Guess
 from onpath.models.systems.mjcf_check import all_elements, checked_model
 from onpath.models.systems.mujoco_process import read_model
 from onpath.models.systems.rigid_chain import Chain, Joint, Shape
-from onpath.models.systems.tip_guess import MOST_TIPS, TipPlace, limb_joints, suggested_tips
+from onpath.models.systems.tip_guess import (
+    MOST_TIPS,
+    TipPlace,
+    check_limbs,
+    limb_joints,
+    suggested_tips,
+)
 from onpath.models.systems.xml_elements import Element, FileFault, safe_name, shown
 
 FREE, BALL, SLIDE = 0, 1, 2  # types of joints in MuJoCo; 3 turns
@@ -245,6 +251,8 @@ class _Model:
     def _suggested(self) -> tuple[str, ...]:
         """The bodies and sites that may be the tip; the first one is it."""
         places, tip = self._places(), self._options.tip
+        if not tip:
+            check_limbs(places)
         names = [places[i].name for i in suggested_tips(places) if places[i].name]
         if not tip and not names:
             raise FileFault(self._root, Message("robot_file.still_tip"))

@@ -11,10 +11,13 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from onpath.models.errors import CodedError
+
 MOST_TIPS = 5  # that are suggested
 LEAST_JOINTS = 3  # on the way to an arm's tip
 PALM_JOINTS = 3  # least number before a link from which fingers branch off
 FINGER_JOINTS = 4  # most of a finger
+FINGERS = 3  # least number on a hand
 HEAD = 3  # rank of a head among limbs
 NAMED = 2  # joints that a name of a tool counts for
 _WORD = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d+")
@@ -35,6 +38,7 @@ _GENERAL = {"link", "frame", "body", "site", "base", "right", "left", "r", "l", 
 _FINGER_PARTS = ("finger", "thumb", "knuckle", "jaw", "claw", "pinky", "phalan")
 _FINGERS = {"index", "middle", "ring", "little", "pad", "proximal", "distal", "digit"}
 _GRIPPERS = {"gripper", "grip"}
+_PALMS = {"palm", "hand"}
 _TURNS = {"yaw", "pitch", "roll", "rotate", "rotation", "revolute", "wrist"}
 _GADGETS = {
     *("camera", "cam", "optical", "imu", "laser", "lidar", "sensor", "led", "accelerometer"),
@@ -92,6 +96,23 @@ def suggested_tips(places: Sequence[TipPlace]) -> list[int]:
     return found[:MOST_TIPS]
 
 
+def check_limbs(places: Sequence[TipPlace]) -> None:
+    """Check that a file of which nobody has named the tip may have an arm or a leg.
+
+    Raises:
+        CodedError: nothing moves, or all that moves are fingers.
+    """
+    tree = _TipTree(places)
+    moving = [i for i, count in enumerate(tree.joints) if count]
+    if not moving:
+        raise CodedError("robot_file.no_joints")
+    ends = [i for i in tree.ends if tree.joints[i]]
+    root = {word for i, count in enumerate(tree.joints) if not count for word in tree.words[i]}
+    on_palm = len(tree.leaving.get(0, [])) >= FINGERS and bool(root & _PALMS)
+    if on_palm or (len(ends) > 1 and all(tree.fingers[i] for i in moving)):
+        raise CodedError("robot_file.hand")
+
+
 def limb_joints(places: Sequence[TipPlace], tip: int, most: int) -> list[str]:
     """The joints on the way to a tip that move if there are more than `most`.
 
@@ -116,11 +137,13 @@ class _TipTree:
         fingers: whether it belongs to a finger.
         passed: groups behind which others move that are not fingers.
         ends: places behind which there is none.
+        words: the words of its name.
+        leaving: places behind a joint, by the group before it.
     """
 
     def __init__(self, places: Sequence[TipPlace]) -> None:
         self._places = places
-        self._words = [_words(place.name) for place in places]
+        self.words = [_words(place.name) for place in places]
         self.joints, self.group, self._length = list[int](), list[int](), list[float]()
         self._last = list[tuple[str, ...]]()
         for i, place in enumerate(places):
@@ -132,7 +155,7 @@ class _TipTree:
             before = self._last[j] if j >= 0 else ()
             self._last.append((*before, *place.joints, place.name)[-6:] if moved else before)
         self._height = [0] * len(places)  # joints behind a group, by its first place
-        self._leaving = dict[int, list[int]]()  # places behind a joint, by the group before it
+        self.leaving = dict[int, list[int]]()
         self.fingers = self._found_fingers()
         self.passed = {
             self.group[place.parent]
@@ -147,9 +170,9 @@ class _TipTree:
             if place.joints and place.parent >= 0:
                 before = self.group[place.parent]
                 self._height[before] = max(self._height[before], self._behind(i))
-                self._leaving.setdefault(before, []).append(i)
+                self.leaving.setdefault(before, []).append(i)
         fingers = [False] * len(self._places)
-        for before, others in self._leaving.items():
+        for before, others in self.leaving.items():
             most, depth = max(map(self._behind, others)), self.joints[before]
             if len(others) > 1 and depth >= PALM_JOINTS and most <= min(FINGER_JOINTS, depth - 1):
                 for i in others:
@@ -174,7 +197,7 @@ class _TipTree:
 
     def branches(self, i: int) -> bool:
         """Whether limbs of two joints or more leave the group of a place, at least two of them."""
-        leaving = self._leaving.get(self.group[i], [])
+        leaving = self.leaving.get(self.group[i], [])
         limbs = [k for k in leaving if not self.fingers[k] and self._behind(k) > 1]
         return len(limbs) > 1
 
@@ -184,7 +207,7 @@ class _TipTree:
 
     def rank(self, i: int) -> tuple[float, ...]:
         """The less, the better."""
-        words, joints = self._words[i], self.joints[i]
+        words, joints = self.words[i], self.joints[i]
         near = {word for name in self._last[i] for word in _words(name)} | {*words}
         limb = HEAD if near & _HEADS else 2 if near & _LEGS else 0 if near & _ARMS else 1
         tool = _tool(words)

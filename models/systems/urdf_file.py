@@ -34,7 +34,13 @@ from onpath.models.systems.file_masses import LinkMass, Masses, add_masses, is_d
 from onpath.models.systems.guesses import Guess
 from onpath.models.systems.mesh_folders import MeshFolders
 from onpath.models.systems.rigid_chain import Chain, Joint, Shape
-from onpath.models.systems.tip_guess import MOST_TIPS, TipPlace, limb_joints, suggested_tips
+from onpath.models.systems.tip_guess import (
+    MOST_TIPS,
+    TipPlace,
+    check_limbs,
+    limb_joints,
+    suggested_tips,
+)
 from onpath.models.systems.xml_elements import Element, FileFault, safe_name, shown
 
 MOST_LINKS = 1000
@@ -134,9 +140,9 @@ class _Tree:
         if tip and tip not in self._links:
             names = ", ".join(self._links)
             raise CodedError("robot_file.no_tip", tip=shown(tip), names=names)
+        if not tip:
+            check_limbs(self._places)
         names = [self._places[i].name for i in suggested_tips(self._places)]
-        if not tip and not names:
-            raise FileFault(self._root, Message("robot_file.still_tip"))
         found = [tip, *(name for name in names if name != tip)] if tip else names
         return tuple(found[:MOST_TIPS])
 

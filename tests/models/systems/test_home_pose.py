@@ -157,3 +157,40 @@ def test_the_predefined_paths_of_a_small_robot_are_smaller(tmp_path: Path) -> No
     assert experiment.schedule.r == robot.radius
     large = read(tmp_path, SEVEN).entry
     assert large.radius == USUAL_RADIUS == FIVE_BAR.radius
+
+
+def tree(root: str, chains: int, joints: int, name: str = "part") -> str:
+    """A file with chains of links that leave its root."""
+    parts = [f'<link name="{root}"/>']
+    for i in range(chains):
+        before = root
+        for k in range(joints):
+            link = f"{name}_{i}_{k}"
+            parts.append(f'<link name="{link}"/>')
+            parts.append(
+                f'<joint name="j_{link}" type="revolute"><parent link="{before}"/>'
+                f'<child link="{link}"/><origin xyz="0.1 0 0.1"/>'
+                f'<axis xyz="{k % 2} {1 - k % 2} 0"/><limit lower="-1" upper="1"/></joint>'
+            )
+            before = link
+    return f"<robot name='tree'>{''.join(parts)}</robot>"
+
+
+@pytest.mark.parametrize(
+    "code, text",
+    [
+        ("no_joints", tree("body", 0, 0)),
+        ("single", tree("body", 4, 1, "rotor")),
+        ("hand", tree("palm", 4, 4)),
+        ("hand", tree("base", 2, 1, "finger")),
+    ],
+    ids=["a rigid body", "a drone with rotors", "a hand", "a gripper"],
+)
+def test_a_file_without_an_arm_or_leg_says_what_it_is(tmp_path: Path, code: str, text: str) -> None:
+    with pytest.raises(CodedError) as caught:
+        read(tmp_path, (), text)
+    assert caught.value.message.code == f"robot_file.{code}"
+
+
+def test_the_legs_of_a_trunk_are_no_fingers(tmp_path: Path) -> None:
+    assert read(tmp_path, (), tree("trunk", 4, 4)).circle > 0

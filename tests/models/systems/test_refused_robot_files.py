@@ -67,7 +67,6 @@ CASES = {
     "twice": (added('<link name="tip"/>'), 12, "link tip"),
     "many": (added("\n".join(link(f"more{i}") for i in range(1000))), 0, "link more"),
     "type": (changed('type="revolute"', 'type="magic"'), 4, "joint joint1"),
-    "still_tip": (re.sub('type="[^"]*"', 'type="fixed"', ARM), 2, "robot arm"),
     "mass": (changed(MASS, '<mass value="-0.6"/>'), 5, "mass"),
     "negative": (changed('damping="0.02"', 'damping="-1"'), 4, "dynamics"),
     "limits": (changed('lower="-3"', 'lower="4"'), 4, "limit"),
