@@ -147,8 +147,8 @@ def _made(file: Path, name: str, read: FileChain, pose: Mapping[str, float]) -> 
     chain, rotors = _with_rotors(read.chain, chosen[0].q)
     source = ChainSource(
         name=name,
-        label=file.stem[:40],
-        text=f"{chain.n} joints, from {file.name}.",
+        label=shown(file.stem),
+        text=f"{chain.n} joints, from {shown(file.name)}.",
         chain=chain,
         home=tuple(chosen[0].q.tolist()),
         axes=axes,

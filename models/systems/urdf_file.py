@@ -307,7 +307,7 @@ class _Tree:
 
     def _link_mass(self, link: Element, place: RigidTransform, moves: bool) -> LinkMass:
         """What the file says of a link's mass, and what it draws of it, in the group's frame."""
-        drawn = [shape for shape in self._shapes(link.all("visual"), place, self._left_out)]
+        drawn = [*self._shapes(link.all("visual"), place, self._left_out)]
         mass = LinkMass(link.name(), drawn=drawn)
         inertial = link.first("inertial")
         if inertial is not None:

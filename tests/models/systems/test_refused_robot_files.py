@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import tracemalloc
 from pathlib import Path
+from xml.sax.saxutils import quoteattr
 
 import numpy as np
 import pytest
@@ -13,9 +14,10 @@ from hypothesis import strategies as st
 
 from onpath.models.errors import CodedError, Message
 from onpath.models.systems.file_chain import Options
-from onpath.models.systems.robot_file import read_robot
+from onpath.models.systems.rigid_chain import Chain
+from onpath.models.systems.robot_file import RobotFile, read_robot
 from onpath.models.systems.urdf_file import read_urdf
-from onpath.models.systems.xml_elements import FileFault, root_of
+from onpath.models.systems.xml_elements import FileFault, root_of, safe_name
 from tests.support.mangled_robots import mangled, robot_or_line, urdf_seeds
 from tests.support.robot_files import PLANAR, urdf
 
@@ -137,6 +139,54 @@ def test_stiff_friction_is_given_an_armature_that_suffices_and_is_said(tmp_path:
     sources = said.entry.source, guessed.entry.source
     assert sources[0] is not None and sources[1] is not None and sources[0].is_as(sources[1])
     assert sources[0].substeps == 1
+
+
+LOOKS = {
+    "zero box": '<geometry><box size="0 0 0"/></geometry>',
+    "two numbers": '<geometry><box size="1 1"/></geometry>',
+    "no size": "<geometry><sphere/></geometry>",
+    "unknown": "<geometry><torus/></geometry><magic/>",
+    "nothing": "",
+    "missing mesh": '<geometry><mesh filename="a.stl"/></geometry>',
+    "xacro": '<geometry><mesh filename="$(find other)/a.stl" scale="${s}"/></geometry>',
+    "package": '<geometry><mesh filename="package://other/a.stl"/></geometry>',
+}
+
+
+@pytest.mark.parametrize("case", LOOKS)
+def test_looks_never_refuse_a_robot(tmp_path: Path, case: str) -> None:
+    """However often they are wrong, they are one remark, or one missing package."""
+    file = tmp_path / "arm.urdf"
+    shapes = f"<visual>{LOOKS[case]}</visual><collision>{LOOKS[case]}</collision>" * 20
+    stray = '<xacro:property name="a" value="${b}"/><gazebo value="$(find x)"/>'
+    shown = re.sub('(<link name="[^"]*">)', rf"\1{shapes}", ARM).replace(
+        "</robot>", stray + "</robot>"
+    )
+    file.write_text(shown.replace("<robot ", '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" '))
+    read = read_robot(file, Options(pose=POSE))
+    assert [body.shapes for body in chain_of(read).bodies] == [()] * 3
+    assert len([*read.remarks, *read.guesses]) <= 1
+    if case == "package":
+        assert [guess.line for guess in read.guesses] == ["--package other=FOLDER"]
+
+
+NAMES = ("a/b", "<b>x</b>", "=1+1", "\u202egnp", "x" * 10_000, "../etc", "{x}", "é", "a b")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_names_never_refuse_a_robot_and_are_short_and_printable(tmp_path: Path, name: str) -> None:
+    file = tmp_path / "arm.urdf"
+    text = ARM.replace('"link1"', quoteattr(name)).replace('"joint1"', quoteattr(name))
+    file.write_text(text, "utf-8")
+    pose = {safe_name(name) if key == "joint1" else key: x for key, x in POSE.items()}
+    joint, *_ = chain_of(read_robot(file, Options(pose=pose))).joints
+    assert joint.name.isprintable() and len(joint.name) <= 128
+    assert joint.name == name or len(name) > 128 or not name.isprintable()
+
+
+def chain_of(read: RobotFile) -> Chain:
+    assert read.entry.source is not None
+    return read.entry.source.chain
 
 
 PLACES = ("other/link.stl", "../link.stl", "/etc/passwd", "file:///etc/hosts", "http://a/b.stl")
