@@ -10,6 +10,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Mapping
+from functools import partial
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
@@ -22,9 +23,11 @@ from onpath.models.systems.limited_process import ProcessEnded, answer_of, serve
 from onpath.models.systems.mesh_folders import MeshFolders
 from onpath.models.systems.xml_elements import LARGEST_FILE, shown
 
-HARMLESS = ("import", "compile", "exec", "open", "os.listdir", "os.scandir", "marshal.loads")
-HARMLESS += ("glob.glob", "glob.glob/2", "sys._getframe", "builtins.id", "code.__new__")
-HARMLESS += ("object.__getattr__", "object.__setattr__", "function.__new__", "marshal.load")
+HARMLESS = (
+    *("import", "compile", "exec", "open", "os.listdir", "os.scandir", "marshal.loads"),
+    *("glob.glob", "glob.glob/2", "sys._getframe", "builtins.id", "code.__new__"),
+    *("object.__getattr__", "object.__setattr__", "function.__new__", "marshal.load"),
+)
 """What an expanded file may lead to; files and folders are looked at as well."""
 
 
@@ -73,7 +76,8 @@ def _answer(job: bytes) -> bytes:
         arguments: Any = import_module("xacro.substitution_args")
         for module in ("yaml", "xml.dom.expatbuilder", "encodings.idna", "glob"):
             import_module(module)
-        arguments._eval_find = arguments._eval_dict["find"] = lambda name: _found(folders, name)
+        find = partial(_found, folders)
+        arguments._eval_find = arguments._eval_dict["find"] = find
         os.environ.clear()
         guard(folders.allowed())
         text = xacro.process_file(asked.file).toprettyxml(indent=" ")

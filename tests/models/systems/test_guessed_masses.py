@@ -173,8 +173,8 @@ def test_the_name_says_on_what_the_motion_rests(
     file.write_text(BARE.replace('<link name="link1">', f'<link name="link1">{SPHERE}'))
     pose = {f"joint{i + 1}": x for i, x in enumerate((2.0, -1.3, -0.9))}
 
-    def name(**more: float) -> str:
-        return read_robot(file, Options(pose=pose, **more)).entry.name
+    def name(density: float | None = None) -> str:
+        return read_robot(file, Options(pose=pose, density=density)).entry.name
 
     own = name()
     assert name() == own and name(density=900) != own
