@@ -53,7 +53,6 @@ class StateMessage(Struct, frozen=True, kw_only=True, tag_field="is", tag="state
         stopped: whether a robot has diverged and stands still.
         rate: simulated seconds per second, as wanted.
         achieved: what was reached lately.
-        together: whether pulling and holding act on both robots.
         undo: whether a discarded past can be restored.
         message: for the user.
         level: how severe the message is; empty without one.
@@ -88,7 +87,6 @@ class StateMessage(Struct, frozen=True, kw_only=True, tag_field="is", tag="state
     stopped: list[bool]
     rate: float
     achieved: float
-    together: bool
     undo: bool
     message: str
     level: str

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from operator import is_
 
 import numpy as np
 
@@ -299,22 +298,19 @@ class ClosedLoopRun:
             leg: a part of a speed profile; it replaces the speed and ramp of the parameters.
             tick: the lab's present tick, in this part.
         """
-        before, self._inputs = self._inputs, (parameters, curve, push)
-        unpaced = leg is None and self._leg is None
-        if before is not None and unpaced and all(map(is_, before, self._inputs)):
-            return
-        ended, self._leg = self._leg, leg
+        before, earlier = self._inputs, self._leg
+        self._inputs, self._leg = (parameters, curve, push), leg
         same = before is not None and before[0] is parameters and before[1] is curve
-        same = same and (ended is None or leg is not None)
+        same = same and (leg is not None or earlier is None)  # the user's speed counts again
         if before is None or not same or before[2] is not push:
             self._pack(self._inputs, None if before is None else self.kind, same)
-        elif leg == ended:
+        elif leg == earlier:
             return
         if leg is not None:
             self.settings = paced(self._layouts, self.settings, leg)
-        if leg is not None and leg != ended:
-            self._change()
-            self.fields()["speed_ref"][:] = leg.at(tick)
+            if leg != earlier:
+                self._change()
+                self.fields()["speed_ref"][:] = leg.at(tick)
 
     def _pack(
         self, inputs: tuple[Parameters, Curve, Push], before: Kind | None, same: bool

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 import viser
 
-from onpath.app.common.palette import AZURE
 from onpath.app.common.work_thread import WorkThread
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
@@ -180,12 +179,7 @@ class ClientScene:
         look, robot = self._look, robot_of(first)
         self._built, self._robot = self._key(first.key), robot
         self._is_placed = False
-        self.client.gui.configure_theme(
-            show_logo=False,
-            show_share_button=False,
-            brand_color=AZURE.rgb,
-            dark_mode=look.dark,
-        )
+        self.client.gui.configure_theme(dark_mode=look.dark)
         stage = stage_of(robot, DARK if look.dark else LIGHT, look.plain)
         callbacks = SceneCallbacks() if first.key.student else _callbacks(self._post, robot)
         self._scene = Scene(self.client, stage, callbacks, titled=False)

@@ -52,9 +52,9 @@ class Arrivals:
         ask_item(client, PAGE_KEY, partial(self._answered, client))
         client.flush()
 
-    def _answered(self, client: viser.ClientHandle, page: str) -> None:
+    def _answered(self, client: viser.ClientHandle, answer: str) -> None:
         if self._silent.discard(client.client_id):
-            self._enter(client, page)
+            self._enter(client, answer)
 
     async def _forget(self, client: viser.ClientHandle) -> None:
         self._silent.discard(client.client_id)

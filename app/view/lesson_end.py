@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -86,11 +86,15 @@ def next_lesson(run: LessonView) -> tuple[str, str] | None:
     return after[0], f"{numbers[after[0]]}: {title}"
 
 
-def end_html(run: LessonView) -> Markup:
-    """The end of a lesson, a route or a test; see `ended_charts` for the places of its charts."""
+def lesson_end(run: LessonView) -> tuple[Markup, list[dict[str, Any]]]:
+    """The end of a lesson, a route or a test, and the charts of its sketches, in order."""
     if run.is_test:
-        return _test_end(run)
+        return _test_end(run), []
     parts = ended_parts(run)
+    return _end_html(run, parts), _ended_charts(run, parts)
+
+
+def _end_html(run: LessonView, parts: Sequence[EndedPart]) -> Markup:
     fronts = {part.chapter.lesson.name: part.chapter.lesson.front for part in parts}
     return part_of_page(
         "lesson/end.html",
@@ -107,10 +111,10 @@ def end_html(run: LessonView) -> Markup:
     )
 
 
-def ended_charts(run: LessonView) -> list[dict[str, Any]]:
+def _ended_charts(run: LessonView, parts: Sequence[EndedPart]) -> list[dict[str, Any]]:
     """The charts of sketches at the end, in the order of their places in its HTML."""
     charts = list[dict[str, Any]]()
-    for part in () if run.is_test else ended_parts(run):
+    for part in parts:
         lesson = part.chapter.lesson
         for predicted in _predicted(part, run.words):
             block, answer, truth = predicted.block, predicted.answer, predicted.truth

@@ -14,7 +14,7 @@ from onpath.app.channel.lesson_messages import LessonMessage, MeasuredMessage
 from onpath.app.common.templates import part_of_page
 from onpath.app.steps.block_data import answer_data, block_data, curves_data, script_data
 from onpath.app.steps.step_html import StepPart, part_of, step_html
-from onpath.app.view.lesson_end import end_html, ended_charts
+from onpath.app.view.lesson_end import lesson_end
 from onpath.app.view.lesson_view import LessonView
 from onpath.app.view.lessons import route_line
 from onpath.app.view.step_navigation import pager_of
@@ -63,9 +63,8 @@ def lesson_message(run: LessonView, robot: Robot) -> LessonMessage:
         pager=part_of_page("lesson/pager.html", pager=pager_of(run), words=run.words),
     )
     if run.ended:
-        return msgspec.structs.replace(
-            message, sections={END: end_html(run)}, charts=ended_charts(run)
-        )
+        html, charts = lesson_end(run)
+        return msgspec.structs.replace(message, sections={END: html}, charts=charts)
     return _with_steps(message, lesson, run)
 
 

@@ -17,7 +17,7 @@ from onpath.models.errors import Message
 from onpath.models.systems.parameters import Parameters
 
 WARNS = "⚠ "
-"""Begins a line that warns; see assets/web/parts/fields.ts."""
+"""Begins a line that warns, as in assets/web/core/words.ts."""
 
 
 @lru_cache(maxsize=256)

@@ -48,7 +48,7 @@ SHELL = (
     *("compare.put_left", "compare.put_right", "compare.on_left", "compare.on_right"),
     *("compare.on_both", "compare.stopped", "compare.stopped_text", "compare.picture"),
     *("compare.time", "compare.curves"),
-    *("class.yes", "class.no"),
+    *("question.yes", "question.no"),
 )
 FILLED = {
     "compare.computing": ("done", "all"),

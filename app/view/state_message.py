@@ -68,7 +68,6 @@ def state_message(
         stopped=[side in snapshot.stopped for side in laws],
         rate=rate,
         achieved=round(snapshot.achieved_speed / rate, 1) * rate,
-        together=snapshot.settings.copy,
         undo=run.can_undo_going_on,
         message=snapshot.message,
         level=snapshot.message_level if snapshot.message else "",

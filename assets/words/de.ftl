@@ -358,8 +358,8 @@ class-forgotten =
         [one] 1 Labor wurde gelöscht.
        *[other] { $count } Labore wurden gelöscht.
     }
-class-yes = Ja
-class-no = Nein
+question-yes = Ja
+question-no = Nein
 class-picked = Gezeigte Skizzen
 class-picked_hint = Nummern wie 2, 5; leer für alle
 class-whereabouts = { $ended } am Ende der Lektion, { $elsewhere } woanders
@@ -1366,7 +1366,6 @@ error-cannot_follow = { $robot } kann dieser Bahn nicht folgen: { $reasons }
 
 error-start_out_of_reach = dort kann der Roboter nicht starten: Der Ort ist außer Reichweite oder zu nah an einer singulären Stellung
 error-start_not_possible = so kann der Roboter nicht starten: { $reason }
-error-set_by_teacher = das kann nur die Lehrkraft ändern
 error-set_by_process = das kann nur ändern, wer diesen Server betreibt
 error-not_a_number = das ist keine Zahl
 error-not_a_point = das ist kein Punkt

@@ -360,8 +360,8 @@ class-forgotten =
         [one] 1 lab was deleted.
        *[other] { $count } labs were deleted.
     }
-class-yes = Yes
-class-no = No
+question-yes = Yes
+question-no = No
 class-picked = Sketches to show
 class-picked_hint = Numbers such as 2, 5; empty for all
 class-whereabouts = { $ended } at the end of the lesson, { $elsewhere } elsewhere
@@ -966,7 +966,6 @@ error-cannot_follow = { $robot } cannot follow this path: { $reasons }
 
 error-start_out_of_reach = the robot cannot start there: the place is out of its reach, or too near to where it is singular
 error-start_not_possible = the robot cannot start like this: { $reason }
-error-set_by_teacher = only the teacher can change this
 error-set_by_process = only those who run this server can change this
 error-not_a_number = that is not a number
 error-not_a_point = that is not a point

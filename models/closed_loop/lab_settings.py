@@ -37,9 +37,8 @@ RATES = (0.125, 0.25, 0.5, 1.0, 2.0, 4.0)
 """Rates that are offered, simulated seconds per second."""
 LARGEST = 20.0  # magnification of the drawn deflection
 
-Role = Literal["lab", "teacher", "process"]
-ROLES: tuple[Role, ...] = ("lab", "teacher", "process")
-"""Who may set something; each may also set what those before may."""
+Role = Literal["lab", "process"]
+"""Who may set something; the process may also set what everybody in the lab may."""
 Kept = Literal["code", "lab", "nowhere"]
 
 
@@ -50,7 +49,7 @@ class LabSetting:
     Attributes:
         spec: unit, range, words, and what it needs.
         default: in a new lab.
-        by: who may set it: everybody in the lab, its teacher, or only the process it runs in.
+        by: who may set it: everybody in the lab, or only the process that it runs in.
         kept: "code": in set-ups, so in share codes and in the stored lab, and a lesson's step
             restores it; "lab": in the stored lab alone; "nowhere": until the lab is closed.
         of_robot: whether each robot of the lab has its own.
@@ -64,7 +63,7 @@ class LabSetting:
 
     def allows(self, role: Role) -> bool:
         """Whether a role may set it."""
-        return ROLES.index(role) >= ROLES.index(self.by)
+        return role == "process" or self.by == "lab"
 
 
 def own(declared: Any, *, kept: Kept = "code", by: Role = "lab", of_robot: bool = False) -> Any:

@@ -138,7 +138,16 @@ class Outcome:
     distances_m: tuple[float, ...]
 
 
-MEASURES = tuple(f.name for f in dataclasses.fields(Outcome))[3:-3]
+MEASURES = (
+    "max_distance_m",
+    "mean_distance_m",
+    "delay_s",
+    "peak_force_N",
+    "impulse_Ns",
+    "energy_given_J",
+    "overspeed",
+    "rms_torque_Nm",
+)
 """The numbers of an outcome for which larger is worse."""
 
 

@@ -90,10 +90,6 @@ class Spec:
             return "number"
         return "switch" if self.options == (False, True) else "choice"
 
-    def acts(self, values: Mapping[str, Any]) -> bool:
-        """Whether it acts, given the values of all settings."""
-        return all(need.met(values) for need in self.needs)
-
 
 def number(
     default: float,

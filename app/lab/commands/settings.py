@@ -61,8 +61,7 @@ class Set(Command):
     def _set_own(self, lab: Lab) -> None:
         setting, simulation = SETTINGS[self.name], lab.simulation
         if not setting.allows(self.role):
-            teacher = setting.by == "teacher"
-            raise CodedError("error.set_by_teacher" if teacher else "error.set_by_process")
+            raise CodedError("error.set_by_process")
         before = simulation.settings
         wanted = changed_setting(before, self.name, self.value)
         if wanted.obstacle == UNPLACED and not before.wall:
@@ -111,14 +110,6 @@ def set_parameters(lab: Lab, wanted: Parameters) -> None:
     simulation.set_parameters(wanted)
     if simulation.run_number != run:
         lab.remark(lab.words("say.begun_anew"))
-
-
-class SetByTeacher(Set):
-    """The same as a teacher's order, for settings with `by="teacher"`; there are none yet."""
-
-    __slots__ = ()
-    from_teacher: ClassVar[bool] = True
-    role: ClassVar[Role] = "teacher"
 
 
 class SetByProcess(Set):

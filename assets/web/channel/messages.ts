@@ -481,8 +481,6 @@ export interface StateMessage {
     rate: number
     /** what was reached lately. */
     achieved: number
-    /** whether pulling and holding act on both robots. */
-    together: boolean
     /** whether a discarded past can be restored. */
     undo: boolean
     /** for the user. */

@@ -1,5 +1,8 @@
 // Texts and numbers in the language of the page.
 
+/** Begins a line that warns, as in app/view/poles.py. */
+export const WARNS = "⚠ "
+
 /** The data of a page, with its messages. */
 export interface Texts {
     words: Record<string, string>

@@ -8,7 +8,7 @@ import { said, type Texts } from "../core/words"
 import { pressed, SheetDialog } from "./sheet"
 
 const DRAFT = "nickname"
-const LONGEST = 200 // characters of a message's text
+const LONGEST = 200 // characters of a code or a name, as `Typed` of app/channel/sheet_messages.py
 
 export class ClassSheet {
     private readonly sheet: SheetDialog

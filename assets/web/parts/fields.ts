@@ -4,14 +4,13 @@ import { elementsOf, made, refuse, svg, switchInput, tell } from "../core/dom"
 import { draftOf, keepDraft } from "../core/drafts"
 import type { FormField, FormOption } from "../core/form_data"
 import { Scale, typedNumber } from "../core/scales"
-import { said, written, type Texts } from "../core/words"
+import { said, WARNS, written, type Texts } from "../core/words"
 import { icon } from "./icons"
 import { PolePlane } from "./pole_plane"
 
 const RESTS = 300 // [ms] after the last touch, for which the hand's value stays
 const TOLD = 5000 // [ms] for which a row says that the lab has another value than the hand wanted
 const PAGE = 10 // steps of Page Up and Page Down
-const WARNS = "⚠ " // begins a line that warns, as in app/view/poles.py
 
 export type Value = FormOption["value"]
 

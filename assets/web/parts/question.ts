@@ -7,8 +7,8 @@ import { pressed, SheetDialog } from "./sheet"
 /** Do something once the user has said yes. */
 export function ask(texts: Texts, title: string, question: string, act: () => void): void {
     const sheet = new SheetDialog(texts, "question", title)
-    const no = pressed("", said(texts, "class.no"), () => sheet.close())
-    const yes = pressed("warning", said(texts, "class.yes"), () => {
+    const no = pressed("", said(texts, "question.no"), () => sheet.close())
+    const yes = pressed("warning", said(texts, "question.yes"), () => {
         sheet.close()
         act()
     })

@@ -3,7 +3,7 @@
 // states, so that it is exact to rounding near w = 0, where the slow poles are.
 
 import type { FigureData, PoleNumbers } from "../core/figure_data"
-import { said, significant, written } from "../core/words"
+import { said, significant, WARNS, written } from "../core/words"
 
 /** The motion across the path, or along it: what is said of it, and a line for each pole, as in app/view/poles.py. */
 export interface Channel {
@@ -49,7 +49,7 @@ function told(data: FigureData, name: "across" | "along", { poles, behaviour, se
     const list = shown.filter(([, imaginary]) => imaginary >= 0)
         .map(([real, imaginary]) => significant(data, real, 3) + (imaginary ? ` ± ${significant(data, imaginary, 3)}i` : ""))
     return {
-        line: `${settles ? "" : "⚠ "}${said(data, `gains.${name}`)}: ${says}; ${said(data, "gains.poles", { poles: list.join(", ") })}`,
+        line: `${settles ? "" : WARNS}${said(data, `gains.${name}`)}: ${says}; ${said(data, "gains.poles", { poles: list.join(", ") })}`,
         points: shown.map(pole => `${name} ${pole.join(" ")}`),
     }
 }

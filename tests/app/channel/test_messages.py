@@ -131,7 +131,7 @@ VALUES: dict[str, st.SearchStrategy[Any]] = {
     name: st.text(max_size=2)
     for name in ("language", "robot", "message", "level", "frozen", "waits", "shared", "machine")
 } | {name: st.integers(0, 2) for name in ("rate", "achieved", "messages", "height", "arrow")}
-VALUES |= {name: st.booleans() for name in ("together", "undo", "presenting", "own", "drawn")}
+VALUES |= {name: st.booleans() for name in ("undo", "presenting", "own", "drawn")}
 VALUES |= {
     name: st.lists(st.text(max_size=1)) for name in ("titles", "names", "texts", "captions", "laws")
 }

@@ -16,7 +16,7 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.storage.lab_state import keep, put_back
 from onpath.app.view.concept_test_facts import results_of
-from onpath.app.view.lesson_end import end_html
+from onpath.app.view.lesson_end import lesson_end
 from onpath.app.view.lesson_view import LessonView
 from onpath.lessons.concept_test.concept_test import AFTER, BEFORE, questions
 from onpath.lessons.words import Words
@@ -98,7 +98,7 @@ def test_the_end_of_a_test_tells_no_score_before_the_second(language: str) -> No
     for name in (BEFORE, AFTER):
         sit(lab, name)
         lesson = take_page_snapshot(lab, 1.0).lesson
-        shown.append(end_html(LessonView(COURSE, Words(language), lesson)))
+        shown.append(lesson_end(LessonView(COURSE, Words(language), lesson))[0])
     right = [
         str(next(o.answer for o in b.options if o.right))
         for b in questions(COURSE.lesson(BEFORE, language)).values()
