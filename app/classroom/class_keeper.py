@@ -44,7 +44,7 @@ class ClassKeeper:
         self._asked: float | None = None  # when the database was last asked; None: not here
         self._claims = 0
         self._opening, self._storing = threading.Lock(), threading.Lock()
-        self.rounds = Periodic("class keeper", KEEP_INTERVAL, self.look)
+        self.rounds = Periodic("class keeper", KEEP_INTERVAL, self.check)
 
     def open(self) -> bool:
         """Claim the class unless it is here and up to date. May wait for the database.
@@ -83,7 +83,7 @@ class ClassKeeper:
             raise
         self._asked = self._class.clock()
 
-    def look(self) -> None:
+    def check(self) -> None:
         """Store the class if it has changed; drop it if another process has it."""
         if self._asked is None:
             return
@@ -106,7 +106,7 @@ class ClassKeeper:
     def stop(self) -> None:
         """Store the class for the last time."""
         self.rounds.stop()
-        self.look()
+        self.check()
 
     def _claim(self) -> None:
         stored = self._records.claim(self.id, classes)

@@ -33,9 +33,9 @@ class ClassSync:
         self._class, self._find = classroom, find
         self._asked: dict[str, int] = {}
         self._bound: dict[str, Lab] = {}
-        self.rounds = Periodic("class", SYNC_INTERVAL, self.look)
+        self.rounds = Periodic("class", SYNC_INTERVAL, self.check)
 
-    def look(self) -> None:
+    def check(self) -> None:
         """Synchronize once: send orders to the labs and report their state to the class."""
         members = self._class.members()
         for code in [code for code in self._bound if code not in members]:

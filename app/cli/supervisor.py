@@ -18,7 +18,7 @@ from contextlib import suppress
 from onpath.app.common.end_signals import END_SIGNALS
 
 SOON = 5.0  # [s]; a lab that ends this soon after its start would only fail again
-LOOK = 0.5  # [s] between a child's looks for its parent
+CHECK = 0.5  # [s] between a child's checks whether its parent lives
 
 
 def supervised(serve: Callable[[bool], int]) -> int:
@@ -69,5 +69,5 @@ def supervised(serve: Callable[[bool], int]) -> int:
 def _end_with(parent: int) -> None:
     """End this process as soon as its parent has ended, however that came."""
     while os.getppid() == parent:
-        time.sleep(LOOK)
+        time.sleep(CHECK)
     os.kill(os.getpid(), signal.SIGTERM)

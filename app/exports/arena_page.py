@@ -201,11 +201,11 @@ def described(trial: Trial, words: Words) -> dict[str, object]:
     """What happens in a trial, in words with numbers."""
     values, sizes = trial.values, np.ptp(_outline(trial), axis=0)
     width, height = (f"{1e3 * size:.0f}" for size in sizes)
-    said = {name: words.number(value) for name, value in values.items()}
+    shown = {name: words.number(value) for name, value in values.items()}
     begin, end = (words.number(time) for time in _acting(trial))
     if trial.obstruction == "hand":
         place = np.array([values["push_z1"], values["push_z2"]])
-        said["away"] = f"{1e3 * np.linalg.norm(_outline(trial) - place, axis=1).min():.0f}"
+        shown["away"] = f"{1e3 * np.linalg.norm(_outline(trial) - place, axis=1).min():.0f}"
     limit = specs(ROBOTS[trial.robot].parameters)["torque_limit"]
     unit = parameter_unit("torque_limit", limit, words).replace(" ", NO_BREAK)
     path = path_label(trial.path, words)
@@ -213,8 +213,8 @@ def described(trial: Trial, words: Words) -> dict[str, object]:
         "number": trial.number,
         "robot": robot_label(trial.robot, words),
         "path": words("arena.sized", path=path, width=width, height=height),
-        "obstruction": words(f"arena.{trial.obstruction}", begin=begin, end=end, **said),
-        "condition": words(f"arena.{trial.condition}", **said),
+        "obstruction": words(f"arena.{trial.obstruction}", begin=begin, end=end, **shown),
+        "condition": words(f"arena.{trial.condition}", **shown),
         "torque_limit": f"{words.number(values['torque_limit'], 3)}{NO_BREAK}{unit}",
     }
 

@@ -205,7 +205,7 @@ class ClassService:
                 self._lost({client})  # the page comes back with a new lab
         self._class.leave(code)
         if self._class_keeper is not None:
-            self._class_keeper.look()
+            self._class_keeper.check()
 
     def _forget(self) -> int:
         """Delete the class and all of its students' labs. Returns their number."""

@@ -250,12 +250,12 @@ class LabRegistry:
         with self._lock:
             return [entry.code for entry in self._entries.values() if entry.client is not None]
 
-    def look(self) -> None:
+    def check(self) -> None:
         """Submit the latest changes. Call it when the simulation thread has stopped."""
         for entry in list(self._entries.values()):
             lab = entry.scheduled.lab
             if isinstance(lab.watch, StateObserver):
-                lab.watch.look(lab)
+                lab.watch.check(lab)
 
     def lose(self, code: str) -> int | None:
         """Remove a lab that another process has now. Returns the client that it had here."""

@@ -60,8 +60,8 @@ from onpath.lessons.course import read_course
 from onpath.lessons.problems import LessonError
 
 log = logging.getLogger(__name__)
-LOOK = 0.5  # [s] between looks for a signal
-FREEING = 10.0  # [s] between looks for labs that were left
+CHECK = 0.5  # [s] between checks for a signal
+FREEING = 10.0  # [s] between searches for labs that were left
 
 
 class LabServer:
@@ -146,7 +146,7 @@ class LabServer:
         if self._options.records is not None:
             stored = self._classes.all_stored()
             self._leases = LeaseKeeper(self._options.records, self._open_here, stored, self._lost)
-            self._leases.look()
+            self._leases.check()
             self._leases.rounds.start()
         self._watchdog.start(signs_of_life(self.thread, self.server.get_event_loop()))
 
@@ -175,7 +175,7 @@ class LabServer:
         self._memory.stop()
         self._newcomers.stop()
         self.thread.stop()
-        self.registry.look()
+        self.registry.check()
         self._loop_cache.close()
         for visit in self.visits:
             visit.show_nothing()
@@ -406,7 +406,7 @@ def serve(
             first = class_address(options.classrooms[0].code) if options.classrooms else ""
             webbrowser.open(f"{lab.address}{first}")
         while True:  # a signal may go to another thread and then does not wake this one
-            time.sleep(LOOK)
+            time.sleep(CHECK)
     except KeyboardInterrupt:
         log.info("stopping")
     finally:

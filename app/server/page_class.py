@@ -68,7 +68,7 @@ class PageClass:
         now = monotonic()
         if now >= self._next and not self._busy:
             self._next, self._busy = now + REFRESH_INTERVAL, True
-            self._thread.submit(self._look)
+            self._thread.submit(self._check)
         if self._seen is None:
             return
         form, values, refused = self._seen
@@ -83,12 +83,12 @@ class PageClass:
             self._orders.lead(message)
         else:
             self._orders.set(message.name, message.value)
-        self._look()
+        self._check()
         if isinstance(message, SetField):
             before = self._heard.get(message.name, 0)
             self._heard = {**self._heard, message.name: max(message.number, before)}
 
-    def _look(self) -> None:
+    def _check(self) -> None:
         """Look at the class; in a thread, since it may be large."""
         try:
             language = self._teaching.progress().language
@@ -97,7 +97,7 @@ class PageClass:
                 answers = ClassAnswers(self._course, words, self._teaching, self._computing.submit)
                 form = TeacherForm(self._course, words, self._teaching, answers)
                 self._form = language, form
-            self._seen = *self._form[1].look(), dict(self._teaching.chosen.refused)
+            self._seen = *self._form[1].shown(), dict(self._teaching.chosen.refused)
         finally:
             self._busy = False
 

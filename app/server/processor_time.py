@@ -13,7 +13,7 @@ Times = tuple[int, int]  # [ns] that a thread computed, and that it waited for a
 
 
 class ProcessorTime:
-    """How much of the time between two looks counts for a thread that shows no sign of life.
+    """How much of the time between two checks counts for a thread that shows no sign of life.
 
     A thread that computes may be in an endless loop: its own processor time counts. A thread that
     waits may wait for ever, or for another thread of this process, which may get little of the
@@ -37,7 +37,7 @@ class ProcessorTime:
         self._computed = dict[int, float]()
         self._elapsed = self._share = self._used = 0.0
 
-    def look(self) -> None:
+    def check(self) -> None:
         """Look at what has been used since the last look."""
         before, self._threads = self._threads, self._read()
         since, self._time = self._time, self._clock()
@@ -52,7 +52,7 @@ class ProcessorTime:
         self._share = got / wanted if wanted else 1.0
 
     def counted(self, thread: int, most: float) -> float:
-        """Time between the last two looks that counts for a thread, [s].
+        """Time between the last two checks that counts for a thread, [s].
 
         Args:
             thread: its native id.

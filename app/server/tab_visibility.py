@@ -13,7 +13,7 @@ from collections.abc import Callable
 from onpath.app.simulation.scheduled_lab import LabDisplay, ScheduledLab
 
 PATIENCE = 6.0  # [s] of silence; a page tells every 2 s, but may stall when it draws in software
-TICK = 0.5  # [s] between looks
+TICK = 0.5  # [s] between checks
 
 
 class TabVisibility:
@@ -45,7 +45,7 @@ class TabVisibility:
             if self._lab is not None and self._lab.display is None:
                 self._lab.display = self._display
 
-    def look(self) -> None:
+    def check(self) -> None:
         """Detach the display if the page has been silent for too long."""
         with self._lock:
             silent = self._clock() - self._heard > PATIENCE

@@ -56,7 +56,7 @@ class Visits:
         self._server = server
         Arrivals(server, self._client_comes)
         server.on_client_disconnect(self._client_leaves)
-        server.get_event_loop().call_soon_threadsafe(self._look)
+        server.get_event_loop().call_soon_threadsafe(self._check)
 
     def __iter__(self) -> Iterator[Visit]:
         """Thread-safe."""
@@ -143,7 +143,7 @@ class Visits:
             disconnect(self._server, {client.client_id})
         self._end_if_left(visit)
 
-    def _look(self) -> None:
-        self._server.get_event_loop().call_later(TICK, self._look)
+    def _check(self) -> None:
+        self._server.get_event_loop().call_later(TICK, self._check)
         for visit in self:
-            visit.sight.look()
+            visit.sight.check()

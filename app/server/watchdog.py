@@ -27,7 +27,7 @@ from onpath.app.simulation.simulation_thread import SimulationThread
 log = logging.getLogger(__name__)
 
 EXIT_CODE = getattr(os, "EX_SOFTWARE", 70)  # which Windows does not have
-LOOKS = 20  # without a sign of life, after which something hangs
+CHECKS = 20  # in a row without a sign of life, after which a thread counts as hanging
 BEAT = 0.1  # [s] between an event loop's signs of life
 
 
@@ -47,7 +47,7 @@ class Sign:
 class SilenceClock(Protocol):
     """See `ProcessorTime`."""
 
-    def look(self) -> None:
+    def check(self) -> None:
         """Begin another interval."""
         ...
 
@@ -60,7 +60,7 @@ class Watchdog:
     """Watches signs of life.
 
     Silence is counted as `ProcessorTime` does. A suspended process is suspended together with its
-    watchdog, so it has missed at most one look.
+    watchdog, so it has missed at most one check.
 
     Args:
         seconds: time without a sign of life after which something counts as hanging, [s]; after
@@ -83,7 +83,7 @@ class Watchdog:
         self._signs: Mapping[str, Sign] = {}
         self._seen: dict[str, object] = {}
         self._silent = defaultdict[str, float](float)  # [s] since the last sign of life
-        self._looks = Periodic("watchdog", seconds / LOOKS, self.look)
+        self._checks = Periodic("watchdog", seconds / CHECKS, self.check)
         self.trouble = ""
 
     def start(self, signs: Mapping[str, Sign]) -> None:
@@ -93,22 +93,22 @@ class Watchdog:
         self._signs = signs
         if hasattr(signal, "SIGPROF"):
             faulthandler.register(signal.SIGPROF, chain=True)
-        self._looks.start()
+        self._checks.start()
 
     def stop(self) -> None:
         """End the watch."""
-        self._looks.stop()
+        self._checks.stop()
         _limit_processor_time(0.0)
 
-    def look(self) -> None:
+    def check(self) -> None:
         """Look once at all signs of life."""
         _limit_processor_time(2 * self._seconds)
         _tell_systemd()
-        self._clock.look()
+        self._clock.check()
         for name, sign in self._signs.items():
             seen = sign.value()
             if seen == self._seen.get(name):
-                self._silent[name] += self._clock.counted(sign.thread(), self._seconds / LOOKS)
+                self._silent[name] += self._clock.counted(sign.thread(), self._seconds / CHECKS)
             else:
                 self._silent[name] = 0.0
             self._seen[name] = seen

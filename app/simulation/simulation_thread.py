@@ -36,7 +36,7 @@ PAUSE = 1e-3  # [s], minimum between frames, so that the network thread is not s
 HANDOVER = 1e-4  # [s] after which another thread must hand the interpreter back
 ALL_COMMANDS, FEWEST = 4e-3, 2e-3  # [s] of a frame for the commands of all labs: most, and least
 MOST = 0.6  # share of a frame up to which slow updates are made; the network takes up to 0.25
-ANSWER = 1.0  # [s] between looks whether the thread that must answer still runs
+ANSWER = 1.0  # [s] between checks whether the thread that must answer still runs
 
 T = TypeVar("T")
 

@@ -61,9 +61,9 @@ class StateObserver:
         """Called in every frame; see `Lab.watch`."""
         self._frames += 1
         if self._frames % SAVE_INTERVAL == 0:
-            self.look(lab)
+            self.check(lab)
 
-    def look(self, lab: Lab) -> None:
+    def check(self, lab: Lab) -> None:
         """Submit the state if it has changed. Nobody else may change the lab meanwhile."""
         now = _now(lab)
         if (generation := self._keeper.generation) != self._generation:

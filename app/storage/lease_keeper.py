@@ -38,13 +38,13 @@ class LeaseKeeper:
         self._records, self._held, self._lost = records, held, lost
         self._watched, self._clock = list(watched), clock
         self._elsewhere: dict[str, float] = {}
-        self.rounds = Periodic("leases", RENEWAL, self.look)
+        self.rounds = Periodic("leases", RENEWAL, self.check)
 
     def is_elsewhere(self, code: str) -> bool:
         """Whether another process had this open at the last renewal, and its lease still lasts."""
         return self._clock() < self._elsewhere.get(code, -inf)
 
-    def look(self) -> None:
+    def check(self) -> None:
         """Renew all leases of what is open; if the database is unavailable, try again next time."""
         now = self._clock()
         try:

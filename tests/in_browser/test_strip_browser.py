@@ -162,7 +162,7 @@ def test_buttons_keep_their_places_whatever_they_say(page: Page) -> None:
         .map(each => each.getBoundingClientRect().toJSON()).filter(each => each.width)"""
     before = page.evaluate(places)
     page.evaluate("onpath.advance(2000)")
-    for act in ("{do: 'run', on: true}", "{do: 'hold', on: true}", "{do: 'look', at: 1}"):
+    for act in ("{do: 'run', on: true}", "{do: 'hold', on: true}", "{do: 'seek', at: 1}"):
         page.evaluate(f"onpath.engine.act({act})")
         page.evaluate(THREE_FRAMES)
         assert page.evaluate(places) == before

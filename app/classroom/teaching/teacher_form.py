@@ -46,7 +46,7 @@ class TeacherForm:
         self._answers, self._steps = answers, StepsForAll(course, words.language)
         self._titles = {name: title for title, name in lesson_titles(course, words).items()}
 
-    def look(self) -> tuple[FormMessage, dict[str, FieldValue]]:
+    def shown(self) -> tuple[FormMessage, dict[str, FieldValue]]:
         """The form as it is now, and the values of its fields."""
         groups = [self._lead(), self._class()]
         if self._course.lessons:

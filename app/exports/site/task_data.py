@@ -86,7 +86,7 @@ def task_data(
 def check_data(
     check: Check, parameters: Parameters, robots: dict[Any, str], words: Words
 ) -> dict[str, Any]:
-    """A check with all its fields, and `said`: those of its words that do not change.
+    """A check with all its fields, and `phrases`: those of its words that do not change.
 
     Args:
         robots: displayed names of the robots.
@@ -101,49 +101,53 @@ def _more(check: Check, parameters: Parameters, robots: dict[Any, str], words: W
 
 @_more.register
 def _(check: Bound, parameters: Parameters, robots: dict[Any, str], words: Words) -> Any:
-    return {"said": {**bound_words(check, robots, words), "need": words.number(check.least)}}
+    return {"phrases": {**bound_words(check, robots, words), "need": words.number(check.least)}}
 
 
 @_more.register
 def _(check: Compare, parameters: Parameters, robots: dict[Any, str], words: Words) -> Any:
     (smaller,) = set(ROLES) - {check.larger}
-    said = {
+    phrases = {
         **compare_words(check, robots, words),
         "smaller": robots[smaller],
         "need": words.number(check.least),
     }
-    return {"smaller": smaller, "said": said}
+    return {"smaller": smaller, "phrases": phrases}
 
 
 @_more.register
 def _(check: Better, parameters: Parameters, robots: dict[Any, str], words: Words) -> Any:
-    said = {
+    phrases = {
         "robot": robots[check.robot],
         "stat": stat_words(check.stat, check.quantity, words),
         "during": words(f"during.{check.during}"),
         "unit": unit_of(check.stat, check.quantity),
         "need": words.number(check.least),
     }
-    return {"said": said}
+    return {"phrases": phrases}
 
 
 @_more.register
 def _(check: Once, parameters: Parameters, robots: dict[Any, str], words: Words) -> Any:
     setting = Setting(name=check.name, equals=check.equals)
-    said = {
+    phrases = {
         **bound_words(check, robots, words),
         "setting": setting_label(check.name, parameters, words),
         "equals": value_label(check.name, check.equals, words),
         "least": words.number(check.least),
     }
     since = [msgspec.to_builtins(event_named(text)) for text in check.since]
-    return {"since": since, "setting": check_data(setting, parameters, robots, words), "said": said}
+    return {
+        "since": since,
+        "setting": check_data(setting, parameters, robots, words),
+        "phrases": phrases,
+    }
 
 
 @_more.register
 def _(check: Event, parameters: Parameters, robots: dict[Any, str], words: Words) -> Any:
     since = [msgspec.to_builtins(event_named(text)) for text in check.since]
-    return {"since": since, "said": {"event": event_words(check, parameters, words)}}
+    return {"since": since, "phrases": {"event": event_words(check, parameters, words)}}
 
 
 @_more.register
@@ -151,7 +155,7 @@ def _(check: Order, parameters: Parameters, robots: dict[Any, str], words: Words
     events = [event_named(text) for text in check.events]
     return {
         "events": [
-            {"event": e.event, "name": e.name, "said": event_words(e, parameters, words)}
+            {"event": e.event, "name": e.name, "phrase": event_words(e, parameters, words)}
             for e in events
         ]
     }
@@ -172,7 +176,7 @@ def _(check: Setting, parameters: Parameters, robots: dict[Any, str], words: Wor
     return {
         "equals": equals,
         "whole": isinstance(present, int),
-        "said": {"name": setting_label(check.name, parameters, words), "wanted": wanted},
+        "phrases": {"name": setting_label(check.name, parameters, words), "wanted": wanted},
         "labels": {str(value): value_label(check.name, value, words) for value in options},
     }
 

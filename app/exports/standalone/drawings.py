@@ -148,7 +148,7 @@ def _tube(figure: FigureChoice, curve: Curve, words: Words) -> dict[str, Any]:
         "across": [*sizes.across.tolist()],
         "along": ALONG,
         "lines": LINES,
-        "said": said,
+        "text": said,
         "steps": steps,
     }
 

@@ -92,17 +92,17 @@ def _page(
 
 def _hint(figure: FigureChoice, words: Words, without: Sequence[str]) -> str:
     """What a reader can do first, and what a recorded run had besides."""
-    said, robots = list[str](), len(figure.laws)
+    hints, robots = list[str](), len(figure.laws)
     if {"hold", "pull"} <= set(figure.controls):
-        said.append(words("standalone.hint_hold_pull", robots=robots))
+        hints.append(words("standalone.hint_hold_pull", robots=robots))
     elif "hold" in figure.controls:
-        said.append(words("standalone.hint_hold", robots=robots))
+        hints.append(words("standalone.hint_hold", robots=robots))
     elif "pull" in figure.controls:
-        said.append(words("standalone.hint_pull"))
+        hints.append(words("standalone.hint_pull"))
     if without:
         parts = ", ".join(words(f"standalone.recorded_{part}") for part in without)
-        said.append(words("standalone.recorded", parts=parts))
-    return " ".join([*said, *guess_sentences(figure.entry.guesses, words.language)])
+        hints.append(words("standalone.recorded", parts=parts))
+    return " ".join([*hints, *guess_sentences(figure.entry.guesses, words.language)])
 
 
 def _hash(text: str) -> str:

@@ -29,7 +29,7 @@ from onpath.lessons.task_schema import Event, Only, Reference, Setting, Task, Wi
 from onpath.lessons.words import DEFAULT, ENGLISH
 
 FRAME = 1 / 30  # [s]
-LOOK = 12  # frames between evaluations of a task's checks
+CHECK = 12  # frames between evaluations of a task's checks
 TOGETHER = 48
 """Attempts that are simulated together: their closed loops are rows of arrays."""
 
@@ -153,10 +153,10 @@ def passes(trials: Iterable[tuple[Asked, Script]], loop_cache: LoopCache) -> Ite
         batch = [_Trial(*each, loop_cache) for each in waiting[begin : begin + TOGETHER]]
         playing = batch
         while playing:
-            for _ in range(LOOK):
+            for _ in range(CHECK):
                 advance_together(trial.frame() for trial in playing)
             for trial in playing:
-                trial.look()
+                trial.check()
             playing = [trial for trial in playing if not trial.over]
         yield from (trial.passed for trial in batch)
 
@@ -186,7 +186,7 @@ class _Trial:
         self.over = self._player.play(self._lab.simulation, self._ask)
         return self._lab.frame(FRAME)
 
-    def look(self) -> None:
+    def check(self) -> None:
         """Judge the task; the attempt ends when it is passed, or cannot be any more."""
         simulation, task = self._lab.simulation, self._task
         if simulation.time < self._least and simulation.run_number == self._begin.run:

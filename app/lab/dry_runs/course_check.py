@@ -28,7 +28,7 @@ from onpath.lessons.text_files import read_text
 from onpath.lessons.words import DEFAULT, Words
 
 FRAME = 1 / 60  # [s]
-LOOKS = 0.1  # [s] between evaluations of a task's checks
+CHECKS = 0.1  # [s] between evaluations of a task's checks
 
 
 def play_course(course: Course, folder: Path, loop_cache: LoopCache) -> Iterator[Problem]:
@@ -73,8 +73,8 @@ def play(lab: Lab, script: Script, task: Task | None = None) -> Iterator[list[Ve
     simulation, words, earlier = lab.simulation, Words(), EarlierRun()
     begin = Beginning.now(simulation)
     lab.script, simulation.running = (player := player_of(script)), True
-    for _ in range(round(3 * script.seconds / LOOKS)):
-        for _ in range(round(LOOKS / FRAME)):
+    for _ in range(round(3 * script.seconds / CHECKS)):
+        for _ in range(round(CHECKS / FRAME)):
             lab.drain()
             lab.advance(simulation.settings.rate * FRAME)
         if simulation.editor.faults or (lab.script is None and not player.finished):

@@ -19,7 +19,7 @@ const HEAD = 2 // numbers of a row before those of the robots
 const PATIENCE = [0, 500, 1000, 2000] // [ms], until it connects again
 const REFUSED = 4001 // the lab does not take the greeting
 const OTHER_VERSION = 1002
-const HANDED = 60 // [ms], at least, between two looks at the past
+const HANDED = 60 // [ms], at least, between two instants of the past that are asked for
 const KEPT = ["labs", "teacher", "speaks", "sounds", "first_minute"]
 const FIRST_SHAPE = 1.75 // of the picture for which the lab's first camera is; see app/scene/stage.py
 const SEES = 2000 // [ms] between messages that the page is drawn
@@ -266,7 +266,7 @@ export class RemoteEngine implements Engine {
 
     act(act: Act): void {
         if (!this.lab?.own) return
-        if (act.do === "look") this.look(act.at)
+        if (act.do === "seek") this.seek(act.at)
         else {
             this.looked = null
             if (act.do === "hold") this.send({ do: "Hold", on: act.on })
@@ -319,7 +319,7 @@ export class RemoteEngine implements Engine {
     }
 
     /** Show an instant at once, and let the lab show it soon. */
-    private look(at: number | null): void {
+    private seek(at: number | null): void {
         const sample = at === null ? undefined : sampleAt(this.samples, at)
         this.looked = { at: sample && sample !== this.present ? sample.time : null, until: performance.now() + SETTLES }
         this.sending ||= window.setTimeout(() => {

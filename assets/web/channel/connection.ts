@@ -14,7 +14,7 @@ const LONGEST = 30_000 // [ms] between attempts that end before the picture is t
 const ASKS = 10_000 // [ms] without our websocket, after which the page asks why it does not open, and from then on between questions
 const REFUSALS = 4 // greetings in a row that are refused, after which the page stays away
 const SLOW = 3000, MUCH = 0.75 // [ms] without a message, or with less than this share of the speed
-const SLEPT = 20_000, WAKES = 10_000 // [ms] between two looks of a page that slept; without a message after that
+const SLEPT = 20_000, WAKES = 10_000 // [ms] between two checks of a page that slept; without a message after that
 const DEAD = 75_000, BUILDS = 150_000 // [ms] without a message, after which a connection counts as lost: with a lab, and without
 const MISSED = 10_000 // [ms] for which the lab may not know of a picture that was there
 const RELOADED = "onpath-reloaded" // when a page was loaded anew for another version of the lab
@@ -34,8 +34,8 @@ export class Connection {
     private found: "silent" | "blocked" | null = null // why our websocket does not open
     private final: Final | null = null
     private asked = performance.now()
-    private quiet = 0 // [ms] of looks without a message
-    private late = 0 // [ms] of looks at which the lab is too slow
+    private quiet = 0 // [ms] of checks without a message
+    private late = 0 // [ms] of checks at which the lab is too slow
     private slept = false
     private looked = Date.now() // a page's own time may stand still while it sleeps
     private heard = 0
@@ -53,7 +53,7 @@ export class Connection {
 
     /** Open what is missing, and say what is; called repeatedly.
      * @param face whether our part of the page is shown */
-    look(face: boolean): void {
+    check(face: boolean): void {
         const now = performance.now(), date = Date.now(), gap = Math.max(date - this.looked, 0), { engine, picture } = this
         this.looked = date
         if (!this.final) engine.open()
@@ -72,7 +72,7 @@ export class Connection {
             this.found = null
             this.asked = now
         }
-        if (engine.connected && engine.lab && !this.final) picture.look(now, engine.lab.scene)
+        if (engine.connected && engine.lab && !this.final) picture.check(now, engine.lab.scene)
         if (picture.outdated) this.reload()
         this.say(this.cause(isThere))
         const { classList } = document.documentElement
@@ -80,7 +80,7 @@ export class Connection {
         classList.toggle("op-no-picture", !picture.isThere)
     }
 
-    /** Count how long nothing has come, or too slowly; a page that stands still itself counts as one look. */
+    /** Count how long nothing has come, or too slowly; a page that stands still itself counts as one check. */
     private count(gap: number, isThere: boolean): void {
         const { engine } = this
         if (engine.heard !== this.heard) {
@@ -109,12 +109,12 @@ export class Connection {
     private say(cause: Cause | null): void {
         const { box } = this
         if (!cause) return box.remove()
-        const said = ownWords.text()
+        const phrases = ownWords.text()
         if (box.dataset["cause"] !== cause || box.lang !== ownWords.language() || cause === "waits") {
-            const text = cause === "waits" ? this.engine.waits : said[cause]!.replace("{origin}", location.origin)
-            if (cause === "no_webgl" && said["course_url"]) {
-                const link = made("a", "", said["course_link"]!)
-                link.href = said["course_url"]
+            const text = cause === "waits" ? this.engine.waits : phrases[cause]!.replace("{origin}", location.origin)
+            if (cause === "no_webgl" && phrases["course_url"]) {
+                const link = made("a", "", phrases["course_link"]!)
+                link.href = phrases["course_url"]
                 box.replaceChildren(`${text} `, link)
             } else tell(box, text)
         }
@@ -189,7 +189,7 @@ class PictureLink {
 
     /** Open viser's websocket if it is missing.
      * @param scene the asking whose picture the lab draws */
-    look(now: number, scene: number): void {
+    check(now: number, scene: number): void {
         this.scene = scene
         if (this.isThere) {
             this.wasThere = this.came = true

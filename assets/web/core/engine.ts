@@ -82,7 +82,7 @@ export type Act =
     | { do: "hold" | "run"; on: boolean }
     | { do: "step" | "reset" }
     | { do: "rate"; rate: number }
-    | { do: "look"; at: number | null }
+    | { do: "seek"; at: number | null }
     | { do: "goOn" } // from the past instant that is shown; what came after it is discarded
 
 /** What has changed: there are new samples; earlier ones are no longer valid; the step of a lesson, or what is

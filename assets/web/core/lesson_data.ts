@@ -38,7 +38,7 @@ export interface TimeWindow {
     least: number
 }
 
-export type Said = Record<string, string>
+export type Phrases = Record<string, string>
 
 export interface Bound extends TimeWindow {
     kind: "bound"
@@ -47,7 +47,7 @@ export interface Bound extends TimeWindow {
     stat: string
     below: number | null
     above: number | null
-    said: Said
+    phrases: Phrases
 }
 
 export interface Compare extends TimeWindow {
@@ -57,7 +57,7 @@ export interface Compare extends TimeWindow {
     smaller: Robot
     stat: string
     ratio: number
-    said: Said
+    phrases: Phrases
 }
 
 export interface Better extends TimeWindow {
@@ -66,7 +66,7 @@ export interface Better extends TimeWindow {
     robot: Robot
     stat: string
     share: number
-    said: Said
+    phrases: Phrases
 }
 
 export interface Once extends TimeWindow {
@@ -79,7 +79,7 @@ export interface Once extends TimeWindow {
     since: { event: string; name: string }[]
     /** With which it counts. */
     setting: SettingCheck
-    said: Said
+    phrases: Phrases
 }
 
 export interface EventCheck {
@@ -88,12 +88,12 @@ export interface EventCheck {
     name: string
     times: number
     since: { event: string; name: string }[]
-    said: Said
+    phrases: Phrases
 }
 
 export interface Order {
     kind: "order"
-    events: { event: string; name: string; said: string }[]
+    events: { event: string; name: string; phrase: string }[]
 }
 
 export interface SettingCheck {
@@ -103,7 +103,7 @@ export interface SettingCheck {
     below: number | null
     above: number | null
     whole: boolean
-    said: Said
+    phrases: Phrases
     labels: Record<string, string>
 }
 

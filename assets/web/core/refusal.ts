@@ -2,12 +2,12 @@
 
 import { made } from "./dom"
 import type { FigureData } from "./figure_data"
-import { said } from "./words"
+import { phrase } from "./words"
 
 /** Show why a figure does not run, in its place. */
 export function refused(data: FigureData, error: unknown): HTMLElement {
     console.error(error)
-    const line = made("p", "note", said(data, "standalone.refused", { reason: String(error) }))
+    const line = made("p", "note", phrase(data, "standalone.refused", { reason: String(error) }))
     line.setAttribute("role", "alert")
     return line
 }

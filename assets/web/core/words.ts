@@ -9,7 +9,7 @@ export interface Texts {
 }
 
 /** A message with its values filled in. */
-export function said(texts: Texts, key: string, values: Record<string, string> = {}): string {
+export function phrase(texts: Texts, key: string, values: Record<string, string> = {}): string {
     const text = texts.words[key]
     if (text === undefined) throw new Error(`no words for ${key}`)
     return filled(text, values)

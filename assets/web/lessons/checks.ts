@@ -1,6 +1,6 @@
 // Evaluates the checks of a task, as lessons/checks.py does. Pure functions.
 
-import type { Better, Bound, Check, Compare, Once, Only, Robot, Said, Setting, SettingCheck, TimeWindow } from "../core/lesson_data"
+import type { Better, Bound, Check, Compare, Once, Only, Robot, Phrases, Setting, SettingCheck, TimeWindow } from "../core/lesson_data"
 import { fixed, general, sum } from "../core/numbers"
 import { filled, localized } from "../core/words"
 
@@ -65,11 +65,11 @@ function verdict(check: Check, record: RunRecord, words: Words): Found {
         const undone = record.happenings.map(each => check.since.some(wanted => happens(each, wanted))).lastIndexOf(true)
         const have = record.happenings.filter((each, i) => i >= undone && happens(each, check)).length
         const counts = { have: String(Math.min(have, check.times)), need: String(check.times) }
-        return { passed: have >= check.times, words: filled(words["check.event"]!, { ...check.said, ...counts }) }
+        return { passed: have >= check.times, words: filled(words["check.event"]!, { ...check.phrases, ...counts }) }
     }
     let found = 0
     for (const each of record.happenings) if (found < check.events.length && happens(each, check.events[found]!)) found++
-    const marked = check.events.map((event, i) => (i < found ? "✓ " : "") + event.said)
+    const marked = check.events.map((event, i) => (i < found ? "✓ " : "") + event.phrase)
     return {
         passed: found === check.events.length,
         words: filled(words["check.order"]!, { events: marked.join(" → ") }),
@@ -82,14 +82,14 @@ export function happens(each: { name: string; detail: string }, wanted: { event:
 }
 
 function bound(check: Bound, record: RunRecord, words: Words): Found {
-    const { said, below, above } = check
-    if (stopped(record, check.robot)) return halted(said["robot"]!, words)
+    const { phrases, below, above } = check
+    if (stopped(record, check.robot)) return halted(phrases["robot"]!, words)
     const mask = chosen(record, check.robot, check)
-    const [enough, seconds, share] = duration(check, record, mask, said, words)
+    const [enough, seconds, share] = duration(check, record, mask, phrases, words)
     const value = statistic(record, check.robot, check.quantity, check.stat, mask)
     if (value === null)
-        return { passed: false, words: filled(words["check.nothing"]!, { ...said, seconds }), share }
-    const shown = filled(words["check.bound"]!, { ...said, value: digits(value, below, above, words) }) + seconds
+        return { passed: false, words: filled(words["check.nothing"]!, { ...phrases, seconds }), share }
+    const shown = filled(words["check.bound"]!, { ...phrases, value: digits(value, below, above, words) }) + seconds
     const broken = missed(check, record, mask)
     const when = broken === null ? "" : filled(words["check.broken"]!, { time: localized(fixed(broken, 1), { words }) })
     return { passed: enough && within(value, below, above), words: shown + when, share, broken }
@@ -105,37 +105,37 @@ function missed(check: Bound, { times, values }: RunRecord, mask: boolean[]): nu
 }
 
 function compare(check: Compare, record: RunRecord, words: Words): Found {
-    const { said } = check
-    if (stopped(record, check.smaller)) return halted(said["smaller"]!, words)
+    const { phrases } = check
+    if (stopped(record, check.smaller)) return halted(phrases["smaller"]!, words)
     const mask = chosen(record, check.larger, check)
-    const [enough, seconds, share] = duration(check, record, mask, said, words)
+    const [enough, seconds, share] = duration(check, record, mask, phrases, words)
     const [large, small] = [check.larger, check.smaller].map(robot =>
         statistic(record, robot, check.quantity, check.stat, chosen(record, robot, check)),
     ) as [number | null, number | null]
     if (large === null || small === null) {
-        const values = { ...said, robot: said["larger"]!, wanted: `${said["wanted"]}×`, seconds }
+        const values = { ...phrases, robot: phrases["larger"]!, wanted: `${phrases["wanted"]}×`, seconds }
         return { passed: false, words: filled(words["check.nothing"]!, values), share }
     }
     const ratio = large / Math.max(small, TINY)
     const shown = ratio < 1000 ? digits(ratio, null, check.ratio, words) : ">1000"
     return {
         passed: enough && ratio >= check.ratio,
-        words: filled(words["check.compare"]!, { ...said, ratio: shown }) + seconds,
+        words: filled(words["check.compare"]!, { ...phrases, ratio: shown }) + seconds,
         share,
     }
 }
 
 function better(check: Better, record: RunRecord, words: Words): Found {
-    const { said } = check
-    if (stopped(record, check.robot)) return halted(said["robot"]!, words)
+    const { phrases } = check
+    if (stopped(record, check.robot)) return halted(phrases["robot"]!, words)
     const mask = chosen(record, check.robot, check)
-    const [enough, seconds, share] = duration(check, record, mask, said, words)
+    const [enough, seconds, share] = duration(check, record, mask, phrases, words)
     const value = statistic(record, check.robot, check.quantity, check.stat, mask)
     const before = record.before.get(check) ?? null
     const limit = before === null ? null : check.share * before
     const written = (each: number | null, below: number | null) =>
-        each === null ? "–" : `${digits(each, below, null, words)} ${said["unit"]!}`
-    const shown = { ...said, value: written(value, limit), before: written(before, null) }
+        each === null ? "–" : `${digits(each, below, null, words)} ${phrases["unit"]!}`
+    const shown = { ...phrases, value: written(value, limit), before: written(before, null) }
     return {
         passed: enough && value !== null && limit !== null && value < limit,
         words: filled(words["check.better"]!, shown) + seconds,
@@ -156,7 +156,7 @@ function once(check: Once, record: RunRecord, words: Words): Found {
     const mask = chosen(record, check.robot, check)
     const shown = now ? statistic(record, check.robot, check.quantity, check.stat, mask) : kept
     const value = shown === null ? "–" : digits(shown, check.below, check.above, words)
-    return { passed: kept !== null, words: filled(words["check.once"]!, { ...check.said, value }) }
+    return { passed: kept !== null, words: filled(words["check.once"]!, { ...check.phrases, value }) }
 }
 
 /** The value that meets the bound while the setting is as required; null if there is none. */
@@ -168,14 +168,14 @@ export function keeps(check: Once, record: RunRecord, words: Words): number | nu
 
 function setting(check: SettingCheck, record: RunRecord, words: Words): Found {
     const value = record.settings[check.name] ?? "None"
-    const { equals, said } = check
+    const { equals, phrases } = check
     const passed =
         equals !== null
             ? same(value, equals, check.whole)
             : typeof value === "number" && within(value, check.below, check.above)
     const shown =
         typeof value !== "number" ? (check.labels[String(value)] ?? String(value)) : check.whole ? String(value) : localized(general(value, 4), { words })
-    return { passed, words: filled(words["check.setting"]!, { ...said, value: shown }) }
+    return { passed, words: filled(words["check.setting"]!, { ...phrases, value: shown }) }
 }
 
 /** A check that holds has no message. */
@@ -304,9 +304,9 @@ function secondsOf(record: RunRecord, mask: boolean[]): number {
 }
 
 /** Whether the instants last long enough, the words for it, and the share that they last, rounded down. */
-function duration(check: TimeWindow, record: RunRecord, mask: boolean[], said: Said, words: Words): [boolean, string, number] {
+function duration(check: TimeWindow, record: RunRecord, mask: boolean[], phrases: Phrases, words: Words): [boolean, string, number] {
     const have = secondsOf(record, mask)
-    const need = said["need"]!, point = words["point"]!
+    const need = phrases["need"]!, point = words["point"]!
     const enough = have >= check.least - INSTANT
     const tenths = Math.floor(10 * have)
     const shown = enough ? (need.includes(point) ? need : `${need}${point}0`) : `${Math.floor(tenths / 10)}${point}${tenths % 10}`

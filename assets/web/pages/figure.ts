@@ -2,7 +2,7 @@
 
 import { made, tell } from "../core/dom"
 import type { Point } from "../core/figure_data"
-import { said, withoutNumbers } from "../core/words"
+import { phrase, withoutNumbers } from "../core/words"
 import { notes, spoken } from "../simulation/captions"
 import { LocalEngine } from "../simulation/local"
 import type { Simulation } from "../simulation/simulation"
@@ -71,8 +71,8 @@ export class Figure {
         this.titles.forEach((element, i) => {
             const law = (element.textContent = simulation.title(i))
             element.title = simulation.sides[i]!.does().text
-            const hint = data.controls.includes("drag") ? `. ${said(data, "standalone.drag_hint")}` : ""
-            this.views[i]!.canvas.setAttribute("aria-label", said(data, "standalone.scene", { law }) + hint)
+            const hint = data.controls.includes("drag") ? `. ${phrase(data, "standalone.drag_hint")}` : ""
+            this.views[i]!.canvas.setAttribute("aria-label", phrase(data, "standalone.scene", { law }) + hint)
         })
         simulation.changed("state")
     }
@@ -140,7 +140,7 @@ export class Figure {
         })
         const captions = engine.texts.map(text => (past === null ? text.caption : ""))
         this.captions.forEach((element, i) => tell(element, captions[i]!))
-        const late = engine.lost > LATE ? said(data, "standalone.late") : ""
+        const late = engine.lost > LATE ? phrase(data, "standalone.late") : ""
         const note = notes(simulation)
         tell(this.note, note)
         tell(this.late, late)

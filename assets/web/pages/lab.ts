@@ -5,7 +5,7 @@ import { made, tell } from "../core/dom"
 import { shown } from "../core/engine"
 import type { FormMessage } from "../core/form_data"
 import { retone } from "../core/ink"
-import { said, significant, written, type Texts } from "../core/words"
+import { phrase, significant, written, type Texts } from "../core/words"
 import { RemoteEngine } from "../channel/channel"
 import type { Command, PageMessage } from "../channel/messages"
 import { Connection } from "../channel/connection"
@@ -71,14 +71,14 @@ class Face {
         this.readings = indices.map(i => made("div", `reading side${i}`, made("span", "value", this.numbers[i]!, " mm"), made("span", "whose")))
         for (const reading of this.readings) reading.role = "group"
         this.stage = new OverStage(engine, texts, this.overlay.element, this.sketch.element)
-        Object.assign(this.undo, { type: "button", textContent: said(texts, "past.undo"), title: said(texts, "past.undo_hint") })
+        Object.assign(this.undo, { type: "button", textContent: phrase(texts, "past.undo"), title: phrase(texts, "past.undo_hint") })
         this.undo.addEventListener("click", () => engine.send({ do: "UndoGoOn" }))
         this.transport.element.append(this.undo, this.strip.menu.element)
         const head = made("div", "head", this.transport.element, this.clock)
         this.column = new Column(texts, engine, () => true, symbol => this.light(symbol), signal)
         this.element = made("section", "", head, made("div", "numbers", ...this.readings), this.strip.element, this.column.beneath)
         this.element.id = "op-strip"
-        this.element.ariaLabel = said(texts, "chart.title")
+        this.element.ariaLabel = phrase(texts, "chart.title")
         this.voice = new Voice(engine, texts, () => UPRIGHT.matches, signal)
         this.shell = new Shell(engine, texts, signal, reopen)
         document.body.prepend(this.stage.element, this.voice.element, this.column.element, this.element, ...this.shell.elements,
@@ -173,7 +173,7 @@ class Face {
         Object.assign(this, { width, height })
         if (canvas !== this.canvas && canvas) {
             this.canvas = canvas
-            Object.assign(canvas, { role: "img", ariaLabel: said(this.texts, "page.scene") })
+            Object.assign(canvas, { role: "img", ariaLabel: phrase(this.texts, "page.scene") })
             const observer = new ResizeObserver(() => requestAnimationFrame(() => this.ended.signal.aborted || this.place()))
             observer.observe(canvas)
             this.ended.signal.addEventListener("abort", () => observer.disconnect())
@@ -236,7 +236,7 @@ class Face {
             const { time, sides } = shown(engine), { running } = engine.state
             sides.forEach((side, i) => tell(this.numbers[i]!, written(texts, 1e3 * side.distance, 1)))
             const clock = { time: written(texts, time, running ? 1 : 2), speed: significant(texts, engine.lab!.achieved, 2) }
-            tell(this.clock, said(texts, running ? "readout.running" : "readout.paused", clock))
+            tell(this.clock, phrase(texts, running ? "readout.running" : "readout.paused", clock))
         }
         requestAnimationFrame(next => this.frame(next))
     }
@@ -251,7 +251,7 @@ function showLab(): void {
     let words: Texts | null = null, reopen = "", calmed = !matchMedia("(prefers-reduced-motion: reduce)").matches
     root.classList.add("op-loading")
     const follow = () => {
-        scheme.look(engine)
+        scheme.check(engine)
         if (engine.ready && document.body) {
             if (engine.words !== words) {
                 reopen = face?.end() ?? ""
@@ -266,7 +266,7 @@ function showLab(): void {
                 engine.act({ do: "run", on: false })
             }
         }
-        connection.look(face !== null)
+        connection.check(face !== null)
     }
     setInterval(follow, LOOK)
     engine.on(change => { if (change === "words" || !face) follow() })
@@ -299,7 +299,7 @@ class Scheme {
         retone()
     }
 
-    look(engine: RemoteEngine): void {
+    check(engine: RemoteEngine): void {
         if (this.dark === this.told || !engine.connected || this.pressed) return
         this.told = this.dark
         engine.send({ is: "dark", on: this.dark })

@@ -3,7 +3,7 @@
 import { made } from "../core/dom"
 import type { Action, PageData, Setting, StepData } from "../core/lesson_data"
 import { refused } from "../core/refusal"
-import { said } from "../core/words"
+import { phrase } from "../core/words"
 import { given } from "../lessons/notes"
 import { showOwn } from "../lessons/own"
 import type { Progress } from "../lessons/progress"
@@ -130,7 +130,7 @@ export class Player implements Robots {
         student.recorded = stage.simulation
         if (step.kind === "predict" || !step.running) stage.run(false)
         this.tasks = step.blocks.flatMap((block, i) =>
-            block.kind === "task" ? [new Task(page, this.block(i), block, student, () => this.tell(said(page, "lesson.passed")))] : [],
+            block.kind === "task" ? [new Task(page, this.block(i), block, student, () => this.tell(phrase(page, "lesson.passed")))] : [],
         )
         this.run()
         if ((await this.recall([this.index])) && turn === this.turn) this.run()
@@ -246,7 +246,7 @@ export class Player implements Robots {
         const { length } = page.steps
         showOwn(page, notes)
         const where = document.querySelector("#where")!
-        where.textContent = index < length ? said(page, "lesson.step", { step: String(index + 1), steps: String(length) }) : ""
+        where.textContent = index < length ? phrase(page, "lesson.step", { step: String(index + 1), steps: String(length) }) : ""
         this.bar.forEach((each, i) => {
             each.classList.toggle("done", i < notes.seen)
             each.classList.toggle("now", i === index)
@@ -255,8 +255,8 @@ export class Player implements Robots {
         const waits = view?.waits ?? false
         back.disabled = index === 0
         next.disabled = index === length
-        next.textContent = said(page, waits ? "site.skip_short" : index === length - 1 ? "lesson.finish" : "lesson.next")
-        next.ariaLabel = waits ? said(page, "lesson.skip") : null
+        next.textContent = phrase(page, waits ? "site.skip_short" : index === length - 1 ? "lesson.finish" : "lesson.next")
+        next.ariaLabel = waits ? phrase(page, "lesson.skip") : null
         const seen = !view || page.steps[index]!.kind !== "run" || view.happened
         next.classList.toggle("main", !waits && seen)
         pager.querySelectorAll(".commit").forEach(each => each.remove())
@@ -278,7 +278,7 @@ export class Player implements Robots {
         words.querySelectorAll(".compared").forEach(each => each.remove())
         const tasks = String(Object.keys(notes.tasks).length)
         const counts = { done: String(notes.seen), all: String(page.steps.length), tasks }
-        document.querySelector("#counts")!.textContent = said(page, "site.done", counts)
+        document.querySelector("#counts")!.textContent = phrase(page, "site.done", counts)
         page.steps.forEach((_, i) => {
             const found = this.views[i]!.prediction
             if (found?.step !== i) return
@@ -288,8 +288,8 @@ export class Player implements Robots {
             const comparison = new Comparison(page, found, notes)
             const run = page.steps[i]!.kind === "run" ? i : i + 1
             const happened = truth !== undefined || notes.played[String(run)]
-            const skipped = given(answer) ? [] : [made("p", "", said(page, "lesson.skipped"))]
-            const shown = happened ? comparison.elements : [made("p", "", said(page, "report.not_happened"))]
+            const skipped = given(answer) ? [] : [made("p", "", phrase(page, "lesson.skipped"))]
+            const shown = happened ? comparison.elements : [made("p", "", phrase(page, "report.not_happened"))]
             words.append(made("div", "compared op-box", made("p", "", made("b", "", question)), ...skipped, ...shown))
             if (happened) comparison.draw(truth)
         })

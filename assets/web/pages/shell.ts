@@ -2,7 +2,7 @@
 
 import type { News, RemoteEngine } from "../channel/channel"
 import type { Command, Index, PageMessage } from "../channel/messages"
-import { said, type Texts } from "../core/words"
+import { phrase, type Texts } from "../core/words"
 import { ClassSheet } from "../parts/class_sheet"
 import { LawComparison } from "../parts/compare_sheet"
 import { display } from "../parts/display_sheet"
@@ -186,10 +186,10 @@ export class Shell {
         }))
         const opens = Object.entries(TITLES).filter(([name]) => this.isClassroom || (name !== "class" && name !== "teach"))
         const sheets = opens.map(([name, key]) => ({
-            kind: said(texts, "search.kind_open"), label: said(texts, key), text: said(texts, `search.of_${name}`), go: () => void this.open(name as Opens),
+            kind: phrase(texts, "search.kind_open"), label: phrase(texts, key), text: phrase(texts, `search.of_${name}`), go: () => void this.open(name as Opens),
         }))
         const found = (index?.found ?? []).map(({ kind, label, text, send }) => ({
-            kind: said(texts, `search.kind_${kind}`), label, text, go: () => send.forEach(message => this.engine.send(message)),
+            kind: phrase(texts, `search.kind_${kind}`), label, text, go: () => send.forEach(message => this.engine.send(message)),
         }))
         return [...settings, ...sheets, ...found]
     }

@@ -4,7 +4,7 @@ import { made } from "../core/dom"
 import type { PageData } from "../core/lesson_data"
 import { packed, unpacked } from "../core/packed"
 import { shapesOf } from "../core/symbols"
-import { said } from "../core/words"
+import { phrase } from "../core/words"
 import { judge, wayOf } from "../lessons/checks"
 import { gradeOf } from "../lessons/grade"
 import { LocalProgress, type Tell } from "../lessons/progress"
@@ -17,7 +17,7 @@ function showPage(page: PageData): void {
     const tell: Tell = (key, values) => {
         if (told.has(key)) return
         told.add(key)
-        document.querySelector("#notice")!.append(made("p", "op-box", said(page, key, values)))
+        document.querySelector("#notice")!.append(made("p", "op-box", phrase(page, key, values)))
     }
     const local = new LocalProgress(tell)
     const progress = (page.scorm && ScormProgress.found(page.scorm, tell)) || local

@@ -3,7 +3,7 @@
 import { save } from "../core/dom"
 import type { PageData } from "../core/lesson_data"
 import { refused } from "../core/refusal"
-import { said } from "../core/words"
+import { phrase } from "../core/words"
 import { Simulation } from "../simulation/simulation"
 import { exported, forget, imported, notesOf } from "../lessons/notes"
 import type { LocalProgress } from "../lessons/progress"
@@ -20,7 +20,7 @@ export class StartPage {
         this.show()
         this.button("save", () => this.save())
         this.button("forget", () => {
-            if (!confirm(said(page, "site.forget_sure"))) return
+            if (!confirm(phrase(page, "site.forget_sure"))) return
             forget(progress, page)
             this.told("site.forgotten")
         })
@@ -48,7 +48,7 @@ export class StartPage {
             const passed = Object.keys(notes.tasks).length
             const counts = { done: String(notes.seen), all: String(steps), tasks: String(passed) }
             const finished = notes.seen >= required && tasks.every(id => id in notes.tasks)
-            element.textContent = notes.seen ? `· ${finished ? "✓ " : ""}${said(this.page, "site.done", counts)}` : ""
+            element.textContent = notes.seen ? `· ${finished ? "✓ " : ""}${phrase(this.page, "site.done", counts)}` : ""
         }
     }
 
@@ -65,7 +65,7 @@ export class StartPage {
     }
 
     private told(key: string): void {
-        document.querySelector("#told")!.textContent = said(this.page, this.progress.lost ? "site.not_kept" : key)
+        document.querySelector("#told")!.textContent = phrase(this.page, this.progress.lost ? "site.not_kept" : key)
         this.show()
     }
 }

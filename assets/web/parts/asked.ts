@@ -3,7 +3,7 @@
 import { made } from "../core/dom"
 import { draftOf, keepDraft } from "../core/drafts"
 import type { BlockData, PageData } from "../core/lesson_data"
-import { localized, said } from "../core/words"
+import { localized, phrase } from "../core/words"
 import { accepted } from "../lessons/own"
 import type { Student } from "../lessons/student"
 
@@ -19,10 +19,10 @@ export function judged(page: PageData, element: Element, right: number | undefin
     const answers = (option: number) => [...element.querySelector(`[data-answer="${option}"]`)!.cloneNode(true).childNodes]
     const lines: HTMLElement[] = []
     if (own !== undefined) {
-        const verdict = made("p", own === right ? "right" : "wrong", said(page, own === right ? "lesson.right" : "lesson.not_quite"))
+        const verdict = made("p", own === right ? "right" : "wrong", phrase(page, own === right ? "lesson.right" : "lesson.not_quite"))
         lines.push(verdict, made("div", "", ...answers(own)))
     }
-    if (own !== right) lines.push(made("p", "", made("b", "", said(page, "report.right"))), made("div", "", ...answers(right)))
+    if (own !== right) lines.push(made("p", "", made("b", "", phrase(page, "report.right"))), made("div", "", ...answers(right)))
     return made("div", "judged", ...lines)
 }
 
@@ -33,7 +33,7 @@ export function ask(page: PageData, element: HTMLElement, block: BlockData, key:
     const after = element.querySelector<HTMLDetailsElement>(".after") // a lab sends it with its verdict
     if (after) after.hidden = true
     const input = element.querySelector<HTMLInputElement | HTMLTextAreaElement>("input, textarea")!
-    const button = made("button", "script-only", said(page, block.kind === "open" || page.test ? "answer.keep" : "answer.check"))
+    const button = made("button", "script-only", phrase(page, block.kind === "open" || page.test ? "answer.keep" : "answer.check"))
     button.type = "button"
     told.before(button)
     const kept = () => (block.kind === "quiz" ? notes.quiz : block.kind === "number" ? notes.numbers : notes.written)[key]
@@ -44,7 +44,7 @@ export function ask(page: PageData, element: HTMLElement, block: BlockData, key:
         if (block.kind === "number") {
             const right = accepted(own as number, block)
             told.className = `verdict ${right ? "right" : "wrong"}`
-            told.textContent = said(page, right ? "lesson.right" : "lesson.not_quite")
+            told.textContent = phrase(page, right ? "lesson.right" : "lesson.not_quite")
         }
         after.hidden = false
         after.open = true
@@ -74,7 +74,7 @@ export function ask(page: PageData, element: HTMLElement, block: BlockData, key:
         } else if (block.kind === "number") {
             const given = Number(input.value.trim().replace(page.words["point"]!, ".").replace("−", "-") || NaN)
             if (!Number.isFinite(given)) {
-                told.textContent = said(page, "lesson.no_number")
+                told.textContent = phrase(page, "lesson.no_number")
                 return
             }
             student.gives(key, given)

@@ -4,7 +4,7 @@
 import { made } from "../core/dom"
 import { covers, disc, letters, Sheet, stroke, tones, type Box, type Pixel, type Tone } from "../core/ink"
 import { niceStep } from "../core/numbers"
-import { said, significant, written, type Texts } from "../core/words"
+import { phrase, significant, written, type Texts } from "../core/words"
 import { firstAfter, valueAt, type Curve, type Span } from "./curves"
 import { tableOf, type TableColumn } from "./table"
 
@@ -81,7 +81,7 @@ export class Chart {
     get columns(): TableColumn[] {
         const { lines, ghost, texts, axes: { unit } } = this
         const found: TableColumn[] = lines.map(({ name, times, values }) => ({ name, times, values, unit }))
-        return ghost ? [...found, { ...ghost, name: said(texts, "chart.yours"), unit }] : found
+        return ghost ? [...found, { ...ghost, name: phrase(texts, "chart.yours"), unit }] : found
     }
 
     private get bottom(): number { return this.hasTimes ? BOTTOM.times : BOTTOM.none }
@@ -207,7 +207,7 @@ export class Chart {
         for (const span of this.spans) {
             const [left, right] = this.ends(span)
             if (right <= left) continue
-            const text = said(this.texts, `chart.${span.kind}`)
+            const text = phrase(this.texts, `chart.${span.kind}`)
             const half = ink.measureText(text).width / 2
             const x = Math.min(Math.max((left + right) / 2, this.x(this.from) + half), this.x(this.until) - half)
             const within = MARGIN.top + TITLE
@@ -313,7 +313,7 @@ export class Chart {
         const { lines, ghost, texts, from, until } = this
         ink.textAlign = "center"
         const shown: (Curve & { name: string; tone: Tone })[] = [...lines]
-        if (ghost) shown.push({ ...ghost, name: said(texts, "chart.yours"), tone: "yours" })
+        if (ghost) shown.push({ ...ghost, name: phrase(texts, "chart.yours"), tone: "yours" })
         shown.forEach((line, i) => {
             if (!line.times.length) return
             const half = ink.measureText(line.name).width / 2 + 3

@@ -2,7 +2,7 @@
 
 import { made, tell } from "../core/dom"
 import type { FormMessage } from "../core/form_data"
-import { said, type Texts } from "../core/words"
+import { phrase, type Texts } from "../core/words"
 import type { Form } from "./form"
 import { pressed } from "./sheet"
 
@@ -15,10 +15,10 @@ export class ClassPanel {
 
     constructor(texts: Texts, private readonly form: Form) {
         this.tabs.role = "tablist"
-        this.tabs.ariaLabel = said(texts, "class.title")
+        this.tabs.ariaLabel = phrase(texts, "class.title")
         this.tabs.addEventListener("keydown", event => this.turn(event))
         this.element = made("section", "class", this.tabs, form.element)
-        this.element.ariaLabel = said(texts, "class.title")
+        this.element.ariaLabel = phrase(texts, "class.title")
     }
 
     /** Show the groups; for a projector, one without nicknames comes first. */

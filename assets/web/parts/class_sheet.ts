@@ -4,7 +4,7 @@
 import type { ClassMessage, PageMessage, SeatAnswer } from "../channel/messages"
 import { made, refuse, tell } from "../core/dom"
 import { draftOf, keepDraft } from "../core/drafts"
-import { said, type Texts } from "../core/words"
+import { phrase, type Texts } from "../core/words"
 import { pressed, SheetDialog } from "./sheet"
 
 const DRAFT = "nickname"
@@ -28,7 +28,7 @@ export class ClassSheet {
     open(seat: ClassMessage, isGone = false): SheetDialog {
         this.show(seat)
         if (isGone) {
-            const gone = made("p", "gone", said(this.texts, "class.gone"))
+            const gone = made("p", "gone", phrase(this.texts, "class.gone"))
             gone.role = "status"
             this.sheet.body.prepend(gone)
         }
@@ -48,7 +48,7 @@ export class ClassSheet {
         const hadFocus = sheet.body.contains(document.activeElement)
         this.acts = this.field = null
         tell(refusal, "")
-        sheet.title = said(texts, teaches ? "class.teach" : "class.title") + (seat.code && ` ${seat.code}`)
+        sheet.title = phrase(texts, teaches ? "class.teach" : "class.title") + (seat.code && ` ${seat.code}`)
         sheet.body.replaceChildren(...teaches ? this.key() : seat.place === "member" ? this.member(seat) : this.joining(seat))
         if (hadFocus) sheet.body.querySelector<HTMLElement>("form input")?.focus()
     }
@@ -61,7 +61,7 @@ export class ClassSheet {
         if (field) field.ariaInvalid = why ? "true" : null
         if (why) field?.focus()
         if (!address) return
-        const link = made("a", "main", said(texts, "class.elsewhere"))
+        const link = made("a", "main", phrase(texts, "class.elsewhere"))
         link.href = address
         this.sheet.body.querySelector("a.main")?.remove()
         refusal.after(link)
@@ -72,7 +72,7 @@ export class ClassSheet {
         const { code, longest } = seat
         if (!code) return [this.asks("class.code", "class.code_hint", "class.join", typed => { this.send({ is: "join", code: typed, name: "" }) })]
         const form = this.asks("class.nickname", "class.nickname_hint", "class.join", typed => {
-            if (lengthOf(typed) > longest) return said(this.texts, "class.too_long", { most: String(longest) })
+            if (lengthOf(typed) > longest) return phrase(this.texts, "class.too_long", { most: String(longest) })
             this.send({ is: "join", code: "", name: typed })
             return ""
         })
@@ -85,12 +85,12 @@ export class ClassSheet {
     private member(seat: ClassMessage): HTMLElement[] {
         const { texts } = this
         keepDraft(DRAFT, null)
-        const [before = "", after = ""] = said(texts, "class.member").split("{name}")
-        const leave = (this.acts = pressed("", said(texts, "class.leave"), () => {
+        const [before = "", after = ""] = phrase(texts, "class.member").split("{name}")
+        const leave = (this.acts = pressed("", phrase(texts, "class.leave"), () => {
             leave.disabled = true
             this.send({ is: "leave" })
         }))
-        return [made("p", "", before, made("b", "", made("bdi", "", seat.name)), after), made("p", "", said(texts, "class.then")), this.stored(seat), leave, this.refusal]
+        return [made("p", "", before, made("b", "", made("bdi", "", seat.name)), after), made("p", "", phrase(texts, "class.then")), this.stored(seat), leave, this.refusal]
     }
 
     private key(): HTMLElement[] {
@@ -101,20 +101,20 @@ export class ClassSheet {
 
     private stored({ stored, privacy }: ClassMessage): HTMLElement {
         const { texts } = this, text = made("p", "note", stored)
-        if (privacy) text.append(" ", Object.assign(made("a", "", said(texts, "class.privacy")), { href: privacy, target: "_blank", rel: "noopener noreferrer" }))
-        return made("details", "stored", made("summary", "", said(texts, "class.what_stored")), text)
+        if (privacy) text.append(" ", Object.assign(made("a", "", phrase(texts, "class.privacy")), { href: privacy, target: "_blank", rel: "noopener noreferrer" }))
+        return made("details", "stored", made("summary", "", phrase(texts, "class.what_stored")), text)
     }
 
     /** A field that must be filled in, and the button that uses it; `use` returns what is wrong with what was typed. */
     private asks(label: string, hint: string, act: string, use: (typed: string) => string | void): HTMLElement {
         const { texts, refusal } = this
         const field = (this.field = Object.assign(made("input", ""), { type: "text", autocomplete: "off", autocapitalize: "off", spellcheck: false, maxLength: LONGEST }))
-        const note = made("p", "note", said(texts, hint))
+        const note = made("p", "note", phrase(texts, hint))
         note.id = "op-seat-hint"
         field.setAttribute("aria-required", "true")
         field.setAttribute("aria-describedby", `${note.id} ${refusal.id}`)
-        const button = (this.acts = Object.assign(made("button", "main", said(texts, act)), { type: "submit" }))
-        const form = made("form", "asks", made("div", "typed", made("label", "", made("span", "", said(texts, label)), field), button), refusal, note)
+        const button = (this.acts = Object.assign(made("button", "main", phrase(texts, act)), { type: "submit" }))
+        const form = made("form", "asks", made("div", "typed", made("label", "", made("span", "", phrase(texts, label)), field), button), refusal, note)
         form.noValidate = true // the lab says in the page's language what is missing
         form.addEventListener("submit", event => {
             event.preventDefault()

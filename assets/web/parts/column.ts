@@ -4,7 +4,7 @@ import type { Action, Command, LessonMessage, MeasuredMessage, PageMessage } fro
 import { elementsOf, isTyped, made } from "../core/dom"
 import { keepScroll } from "../core/drafts"
 import type { Answer, BlockData, PageData, TaskData } from "../core/lesson_data"
-import { said, type Texts } from "../core/words"
+import { phrase, type Texts } from "../core/words"
 import type { Verdict } from "../lessons/checks"
 import { noNotes } from "../lessons/notes"
 import type { Result, Student } from "../lessons/student"
@@ -74,7 +74,7 @@ export class Column implements Robots {
         this.page = { words: texts.words, lesson: "", symbols: {}, figures: [], steps: [], lessons: {} }
         this.element.id = "op-column"
         this.element.hidden = true
-        this.pager.ariaLabel = said(texts, "lesson.lessons")
+        this.pager.ariaLabel = phrase(texts, "lesson.lessons")
         this.live.setAttribute("role", "status")
         this.element.append(this.live)
         this.legend = new Legend(this.page, light, ended)
@@ -253,7 +253,7 @@ export class Column implements Robots {
     private follow(): void {
         const { page, view, student } = this
         this.tasks = page.steps[view?.index ?? -1]?.blocks.flatMap((block, i) =>
-            block.kind === "task" ? [new Task(page, view!.block(i)!, block, student, () => this.tell(said(page, "lesson.passed")))] : [],
+            block.kind === "task" ? [new Task(page, view!.block(i)!, block, student, () => this.tell(phrase(page, "lesson.passed")))] : [],
         ) ?? []
         for (const task of this.tasks) task.follow()
     }

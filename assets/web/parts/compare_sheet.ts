@@ -4,7 +4,7 @@
 import type { Command, Compared, ComparedLaw, CompareSheet, PageMessage } from "../channel/messages"
 import { made, svg, tell } from "../core/dom"
 import { niceStep } from "../core/numbers"
-import { said, written, type Texts } from "../core/words"
+import { phrase, written, type Texts } from "../core/words"
 import { pressed, SheetDialog } from "./sheet"
 
 const [WIDTH, HEIGHT, LEFT, BELOW] = [560, 260, 44, 30] // [px] of the picture, and of its margins
@@ -32,11 +32,11 @@ export class LawComparison {
     private staged = ""
 
     constructor(private readonly texts: Texts, private readonly host: Comparing) {
-        this.sheet = new SheetDialog(texts, "compare", said(texts, "compare.title"))
+        this.sheet = new SheetDialog(texts, "compare", phrase(texts, "compare.title"))
         this.state.setAttribute("role", "status")
-        this.start = pressed("main", said(texts, "compare.run"), () => this.run())
-        const what = made("label", "", made("span", "", said(texts, "compare.obstruction")), this.what)
-        this.sheet.body.append(made("p", "", said(texts, "compare.text")), this.laws, made("div", "row", what, this.start), this.state, this.result)
+        this.start = pressed("main", phrase(texts, "compare.run"), () => this.run())
+        const what = made("label", "", made("span", "", phrase(texts, "compare.obstruction")), this.what)
+        this.sheet.body.append(made("p", "", phrase(texts, "compare.text")), this.laws, made("div", "row", what, this.start), this.state, this.result)
     }
 
     /** Open it with what can be compared now; the last results are still there. */
@@ -48,7 +48,7 @@ export class LawComparison {
                 const box = Object.assign(made("input", ""), { type: "checkbox", value: law.name, checked: law.chosen })
                 return Object.assign(made("label", "", box, law.label), { title: law.text })
             })
-            laws.replaceChildren(made("legend", "", said(texts, "compare.laws")), ...boxes)
+            laws.replaceChildren(made("legend", "", phrase(texts, "compare.laws")), ...boxes)
             const chosen = what.value || "brake"
             what.replaceChildren(...data.obstructions.map(({ name, label }) => Object.assign(made("option", "", label), { value: name })))
             what.value = chosen
@@ -71,7 +71,7 @@ export class LawComparison {
         this.rows = rows
         this.acts = acts
         this.start.disabled = rows.length < all
-        tell(this.state, rows.length < all ? said(texts, "compare.computing", { done: String(rows.length), all: String(all) }) : "")
+        tell(this.state, rows.length < all ? phrase(texts, "compare.computing", { done: String(rows.length), all: String(all) }) : "")
         this.draw()
         if (rows.length === 1) this.result.scrollIntoView({ block: "nearest" })
     }
@@ -84,10 +84,10 @@ export class LawComparison {
 
     private run(): void {
         const laws = [...this.laws.querySelectorAll<HTMLInputElement>("input:checked")].map(box => box.value)
-        if (laws.length < 1 || laws.length > this.data.most) return tell(this.state, said(this.texts, "compare.count", { most: String(this.data.most) }))
+        if (laws.length < 1 || laws.length > this.data.most) return tell(this.state, phrase(this.texts, "compare.count", { most: String(this.data.most) }))
         this.start.disabled = true
         this.rows = []
-        tell(this.state, said(this.texts, "compare.computing", { done: "0", all: String(laws.length) }))
+        tell(this.state, phrase(this.texts, "compare.computing", { done: "0", all: String(laws.length) }))
         this.host.send({ is: "compare_laws", laws, obstruction: this.what.value })
     }
 
@@ -96,7 +96,7 @@ export class LawComparison {
         if (!rows.length) return this.result.replaceChildren()
         const ordered = [...rows].sort((a, b) => Number(a.stopped) - Number(b.stopped) || a[by] - b[by])
         const heads = MEASURES.map(measure => {
-            const sort = pressed("sort", said(texts, `compare.${measure}`), () => {
+            const sort = pressed("sort", phrase(texts, `compare.${measure}`), () => {
                 this.by = measure
                 this.draw()
                 this.result.querySelector<HTMLElement>(`.sort[data-by=${measure}]`)?.focus()
@@ -107,8 +107,8 @@ export class LawComparison {
             return head
         })
         const body = ordered.map(row => this.row(row))
-        const table = made("table", "", made("thead", "", made("tr", "", Object.assign(made("th", "", said(texts, "compare.law")), { scope: "col" }), ...heads, made("th", "", made("span", "op-unseen", said(texts, "compare.put"))))), made("tbody", "", ...body))
-        const notes = [...(rows.some(row => row.stopped) ? [said(texts, "compare.stopped_text")] : []), ...rows.map(row => row.beyond).filter(Boolean)]
+        const table = made("table", "", made("thead", "", made("tr", "", Object.assign(made("th", "", phrase(texts, "compare.law")), { scope: "col" }), ...heads, made("th", "", made("span", "op-unseen", phrase(texts, "compare.put"))))), made("tbody", "", ...body))
+        const notes = [...(rows.some(row => row.stopped) ? [phrase(texts, "compare.stopped_text")] : []), ...rows.map(row => row.beyond).filter(Boolean)]
         this.result.replaceChildren(this.curves(ordered), made("div", "wide", table), ...notes.map(each => made("p", "note", each)))
     }
 
@@ -117,7 +117,7 @@ export class LawComparison {
         const side = host.laws.indexOf(row.law)
         const cells = [written(texts, row.distance, 1), written(texts, row.delay, 1), written(texts, row.force, 0)]
         const put = ([0, 1] as const).map(i => {
-            const button = pressed(`put side${i}`, said(texts, i ? "compare.put_right" : "compare.put_left"), () => {
+            const button = pressed(`put side${i}`, phrase(texts, i ? "compare.put_right" : "compare.put_left"), () => {
                 host.send({ do: "ChooseLaw", side: i ? "right" : "left", law: row.law })
             })
             button.ariaLabel = `${row.label}: ${button.textContent}`
@@ -126,8 +126,8 @@ export class LawComparison {
         })
         const name = Object.assign(made("th", "", made("i", "swatch"), row.label), { scope: "row" })
         name.style.setProperty("--colour", this.colour(row.law))
-        if (side >= 0) name.append(" ", made("small", "", said(texts, host.laws.every(each => each === row.law) ? "compare.on_both" : side ? "compare.on_right" : "compare.on_left")))
-        const line = made("tr", side >= 0 ? `side${side}` : "", name, ...cells.map(cell => made("td", "", row.stopped ? said(texts, "compare.stopped") : cell)), made("td", "", ...put))
+        if (side >= 0) name.append(" ", made("small", "", phrase(texts, host.laws.every(each => each === row.law) ? "compare.on_both" : side ? "compare.on_right" : "compare.on_left")))
+        const line = made("tr", side >= 0 ? `side${side}` : "", name, ...cells.map(cell => made("td", "", row.stopped ? phrase(texts, "compare.stopped") : cell)), made("td", "", ...put))
         line.addEventListener("pointerenter", () => this.point(row.law))
         line.addEventListener("pointerleave", () => this.point(""))
         return line
@@ -148,7 +148,7 @@ export class LawComparison {
     /** The distance to the path over time, at the worst place of each law. */
     private curves(rows: readonly ComparedLaw[]): Element {
         const { texts } = this
-        const picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": said(texts, "compare.picture") })
+        const picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": phrase(texts, "compare.picture") })
         const until = Math.max(...rows.map(row => row.step * (row.curve.length - 1)), 1)
         const finite = rows.flatMap(row => row.curve).filter(Number.isFinite)
         const top = niceStep(Math.max(...finite.map(each => Math.min(each, 500)), 1))
@@ -160,7 +160,7 @@ export class LawComparison {
             picture.append(letters(LEFT - 6, y(part * top) + 4, written(texts, part * top), "end"))
         }
         for (let time = 0; time <= until; time++) picture.append(letters(x(time), HEIGHT - BELOW + 16, written(texts, time), "middle"))
-        picture.append(letters(WIDTH - 8, HEIGHT - 2, said(texts, "compare.time"), "end"), letters(LEFT - 40, 8, "mm", "start"))
+        picture.append(letters(WIDTH - 8, HEIGHT - 2, phrase(texts, "compare.time"), "end"), letters(LEFT - 40, 8, "mm", "start"))
         for (const row of [...rows].reverse()) {
             const points = row.curve.map((value, i) => `${x(i * row.step).toFixed(1)},${y(value).toFixed(1)}`).join(" ")
             const line = svg("polyline", { points })
@@ -168,7 +168,7 @@ export class LawComparison {
             line.dataset["law"] = row.law
             picture.append(line)
         }
-        return made("figure", "", picture, made("figcaption", "", said(texts, "compare.curves")))
+        return made("figure", "", picture, made("figcaption", "", phrase(texts, "compare.curves")))
     }
 }
 

@@ -2,7 +2,7 @@
 
 import type { Command, DisplaySheet, PageMessage } from "../channel/messages"
 import { made, switchInput } from "../core/dom"
-import { said, type Texts } from "../core/words"
+import { phrase, type Texts } from "../core/words"
 import { LOOKS, type Look } from "./look"
 import { pressed, SheetDialog } from "./sheet"
 
@@ -18,22 +18,22 @@ interface Display {
 }
 
 export function display(texts: Texts, { languages, speaks, sounds }: DisplaySheet, host: Display): SheetDialog {
-    const sheet = new SheetDialog(texts, "display", said(texts, "display.title"))
+    const sheet = new SheetDialog(texts, "display", phrase(texts, "display.title"))
     const language = chosen("language", languages.map(({ code, name }) => [code, name] as const), host.language, code => host.send({ do: "SetLanguage", language: code }))
-    const look = chosen("look", LOOKS.map(each => [each, said(texts, `look.${each}`)] as const), host.look, each => host.setLook(each as Look))
+    const look = chosen("look", LOOKS.map(each => [each, phrase(texts, `look.${each}`)] as const), host.look, each => host.setLook(each as Look))
     const toggle = (key: string, on: boolean, set: (on: boolean) => void) => {
         const box = switchInput({ checked: on })
         box.addEventListener("change", () => set(box.checked))
-        return made("label", "row", made("span", "", said(texts, key)), box)
+        return made("label", "row", made("span", "", phrase(texts, key)), box)
     }
     sheet.body.append(
-        made("label", "row", made("span", "", said(texts, "lesson.language")), language),
-        made("label", "row", made("span", "", said(texts, "look.title")), look),
+        made("label", "row", made("span", "", phrase(texts, "lesson.language")), language),
+        made("label", "row", made("span", "", phrase(texts, "look.title")), look),
         toggle("lesson.presenting", host.large, on => host.send({ do: "Set", name: "presenting", value: on })),
         toggle("display.speaks", speaks, on => host.send({ is: "prefer", name: "speaks", on })),
         toggle("display.sounds", sounds, on => host.send({ is: "prefer", name: "sounds", on })),
     )
-    if (host.teach) sheet.body.append(made("p", "row", pressed("", said(texts, "class.teacher"), host.teach)))
+    if (host.teach) sheet.body.append(made("p", "row", pressed("", phrase(texts, "class.teacher"), host.teach)))
     sheet.open(language)
     return sheet
 }

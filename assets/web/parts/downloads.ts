@@ -2,7 +2,7 @@
 
 import type { Download, Files } from "../channel/files"
 import { made, tell } from "../core/dom"
-import { said, type Texts } from "../core/words"
+import { phrase, type Texts } from "../core/words"
 
 const STAYS = 4000 // [ms] that a notice stays after its file has come
 
@@ -19,7 +19,7 @@ export class Downloads {
         this.bar.max = 1
         const close = made("button", "op-cross", "×")
         close.type = "button"
-        close.ariaLabel = said(texts, "help.close")
+        close.ariaLabel = phrase(texts, "help.close")
         close.addEventListener("click", () => (this.element.hidden = true))
         this.element.append(this.text, this.bar, close)
         files.on(download => this.show(download), ended)

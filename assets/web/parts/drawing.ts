@@ -2,7 +2,7 @@
 
 import { made } from "../core/dom"
 import { niceStep } from "../core/numbers"
-import { said, significant } from "../core/words"
+import { phrase, significant } from "../core/words"
 import type { Chart } from "./chart"
 import { firstAfter, valueAt, type Curve } from "./curves"
 
@@ -20,7 +20,7 @@ export class Drawing {
         const { texts, plot } = chart
         this.points = Array.from({ length: POINTS }, (_, i) => {
             const point = made("div", "point")
-            const name = said(texts, "chart.point", { time: significant(texts, this.time(i), 3) })
+            const name = phrase(texts, "chart.point", { time: significant(texts, this.time(i), 3) })
             Object.assign(point, { tabIndex: i ? -1 : 0, role: "slider", ariaLabel: name, ariaOrientation: "vertical" })
             point.addEventListener("keydown", event => this.key(event, i))
             point.addEventListener("focus", () => this.points.forEach(each => (each.tabIndex = each === point ? 0 : -1))) // one stop of Tab

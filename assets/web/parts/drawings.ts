@@ -54,10 +54,10 @@ export class Drawings {
     }
 
     /** What the tube and the lines in it mean, in words; empty if they are not drawn. */
-    said({ number, path }: Scene): string {
+    phrase({ number, path }: Scene): string {
         const { shown, data } = this, tube = data.tubes?.[number]
         if (!tube || path.edited || !(shown.has("tube") || shown.has("grid"))) return ""
-        return shown.has("grid") ? `${tube.said} ${tube.steps}` : tube.said
+        return shown.has("grid") ? `${tube.text} ${tube.steps}` : tube.text
     }
 
     private labels(ink: CanvasRenderingContext2D, { names, points, axes, axisNames }: NonNullable<DrawingsData["labels"]>, scene: Scene): void {

@@ -4,7 +4,7 @@ import { elementsOf, made, refuse, svg, switchInput, tell } from "../core/dom"
 import { draftOf, keepDraft } from "../core/drafts"
 import type { FormField, FormOption } from "../core/form_data"
 import { Scale, typedNumber } from "../core/scales"
-import { said, WARNS, written, type Texts } from "../core/words"
+import { phrase, WARNS, written, type Texts } from "../core/words"
 import { icon } from "./icons"
 import { PolePlane } from "./pole_plane"
 
@@ -102,7 +102,7 @@ export abstract class FieldRow {
         if (value !== undefined) this.show(value)
         this.back.style.visibility = isChanged ? "visible" : "hidden" // its room stays
         if (isChanged) {
-            const name = said(host.texts, field.mark == null ? "form.back" : "form.back_lesson", { value: this.words(this.base!) })
+            const name = phrase(host.texts, field.mark == null ? "form.back" : "form.back_lesson", { value: this.words(this.base!) })
             if (this.back.title !== name) this.back.title = this.back.ariaLabel = name
         }
         const refused = this.refused || host.refused(field.name)
@@ -110,7 +110,7 @@ export abstract class FieldRow {
         const differs = !refused && this.wanted !== null && !this.holds
         if (differs) this.telling ??= setTimeout(() => this.forget(), TOLD)
         this.element.classList.toggle("differs", differs)
-        refuse(this.refusal, differs ? said(host.texts, "form.differs", { value: this.words(wanted!) }) : refused)
+        refuse(this.refusal, differs ? phrase(host.texts, "form.differs", { value: this.words(wanted!) }) : refused)
         for (const input of this.inputs) {
             if (refused) input.setAttribute("aria-describedby", this.refusal.id)
             else input.removeAttribute("aria-describedby")
@@ -251,7 +251,7 @@ class NumberRow extends FieldRow {
 
     words(value: Value): string {
         const { unit, on } = this.field
-        if (on != null && value === 0) return said(this.form.host.texts, "form.off")
+        if (on != null && value === 0) return phrase(this.form.host.texts, "form.off")
         return `${this.digits(value)} ${unit ?? ""}`.trim()
     }
 
@@ -346,7 +346,7 @@ class NumberRow extends FieldRow {
         const typed = typedNumber(this.box.value, texts.words["point"] ?? "."), value = typed === null ? null : this.ofUnits(typed)
         if (typed === null || value === null || value < low || value > high) {
             const range = { low: this.digits(low), high: this.digits(high) }
-            this.refused = said(texts, value === null ? "form.no_number" : "form.range", range)
+            this.refused = phrase(texts, value === null ? "form.no_number" : "form.range", range)
             this.form.changed()
             return false
         }
@@ -465,7 +465,7 @@ class SwitchRow extends FieldRow {
     }
 
     words(value: Value): string {
-        return said(this.form.host.texts, value ? "form.is_on" : "form.off")
+        return phrase(this.form.host.texts, value ? "form.is_on" : "form.off")
     }
 
     protected name(): void {
@@ -529,7 +529,7 @@ class TextRow extends FieldRow {
         area.rows = 1
         area.spellcheck = false
         use.type = "button"
-        use.textContent = said(form.host.texts, "form.use")
+        use.textContent = phrase(form.host.texts, "form.use")
         use.addEventListener("click", () => this.commit(), { signal })
         area.addEventListener("input", () => {
             this.typing = this.isKept = true

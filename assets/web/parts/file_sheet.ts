@@ -3,7 +3,7 @@
 
 import type { Files } from "../channel/files"
 import { made, refuse, switchInput, tell } from "../core/dom"
-import { said, type Texts } from "../core/words"
+import { phrase, type Texts } from "../core/words"
 import { pressed, SheetDialog } from "./sheet"
 
 const KINDS = ".csv,.txt,.tsv,.svg,.gcode,.nc,.ngc"
@@ -11,18 +11,18 @@ const KINDS = ".csv,.txt,.tsv,.svg,.gcode,.nc,.ngc"
 /** A sheet that takes a file, or has been given one. */
 export function pathFromFile(texts: Texts, files: Files, dropped?: File): SheetDialog {
     const given = new AbortController()
-    const sheet = new SheetDialog(texts, "file", said(texts, "design.files"), () => given.abort())
+    const sheet = new SheetDialog(texts, "file", phrase(texts, "design.files"), () => given.abort())
     const number = (key: string, value: number, max: number, step: number) => {
         const box = Object.assign(made("input", ""), { type: "number", min: "0", max: String(max), step: String(step), valueAsNumber: value })
-        box.title = said(texts, `design.${key}_hint`)
-        return { box, label: made("label", "row", made("span", "", said(texts, `design.${key}`)), box) }
+        box.title = phrase(texts, `design.${key}_hint`)
+        return { box, label: made("label", "row", made("span", "", phrase(texts, `design.${key}`)), box) }
     }
     const size = number("size", 100, 400, 5), radius = number("radius", 0, 100, 1)
-    const opened = switchInput({ title: said(texts, "design.open_hint") })
+    const opened = switchInput({ title: phrase(texts, "design.open_hint") })
     const chooser = Object.assign(made("input", ""), { type: "file", accept: KINDS, hidden: true })
-    const choose = pressed("main", said(texts, "design.upload"), () => chooser.click())
+    const choose = pressed("main", phrase(texts, "design.upload"), () => chooser.click())
     const state = made("p", "state"), refusal = made("p", "refusal")
-    const bar = Object.assign(made("progress", ""), { max: 1, hidden: true, ariaLabel: said(texts, "design.reading") })
+    const bar = Object.assign(made("progress", ""), { max: 1, hidden: true, ariaLabel: phrase(texts, "design.reading") })
     state.role = "status"
     refusal.role = "alert"
 
@@ -37,7 +37,7 @@ export function pathFromFile(texts: Texts, files: Files, dropped?: File): SheetD
         isBusy = choose.disabled = true
         bar.hidden = false
         refuse(refusal, "")
-        tell(state, said(texts, "design.reading"))
+        tell(state, phrase(texts, "design.reading"))
         let why = ""
         while (isStale && !given.signal.aborted) {
             isStale = false
@@ -45,7 +45,7 @@ export function pathFromFile(texts: Texts, files: Files, dropped?: File): SheetD
         }
         isBusy = choose.disabled = false
         bar.hidden = true
-        tell(state, why ? "" : said(texts, "design.followed", { file: file.name }))
+        tell(state, why ? "" : phrase(texts, "design.followed", { file: file.name }))
         refuse(refusal, why)
         sheet.element.classList.toggle("followed", !why)
         if (document.activeElement === document.body) choose.focus() // it was not to be pressed meanwhile
@@ -65,8 +65,8 @@ export function pathFromFile(texts: Texts, files: Files, dropped?: File): SheetD
         event.preventDefault()
         take(event.dataTransfer?.files[0])
     })
-    const open = made("label", "row", made("span", "", said(texts, "design.open")), opened)
-    sheet.body.append(made("p", "note", said(texts, "design.upload_hint")), size.label, radius.label, open, made("div", "row", choose, chooser, bar), state, refusal)
+    const open = made("label", "row", made("span", "", phrase(texts, "design.open")), opened)
+    sheet.body.append(made("p", "note", phrase(texts, "design.upload_hint")), size.label, radius.label, open, made("div", "row", choose, chooser, bar), state, refusal)
     sheet.open(choose)
     take(dropped)
     return sheet

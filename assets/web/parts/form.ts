@@ -4,7 +4,7 @@
 import { made, tell } from "../core/dom"
 import type { FormField, FormGroup, FormMessage, FormNeed } from "../core/form_data"
 import { recalled, remember } from "../core/memory"
-import { said } from "../core/words"
+import { phrase } from "../core/words"
 import { rowOf, same, type FormHost, type FieldRow, type RowForm } from "./fields"
 
 const OPENED = "onpath-groups" // which groups are open, in the browser's memory
@@ -153,7 +153,7 @@ class GroupView {
                 if (details.open) form.opened(this)
             }, { signal })
             this.dot.setAttribute("role", "img")
-            this.dot.ariaLabel = said(texts, "form.changed")
+            this.dot.ariaLabel = phrase(texts, "form.changed")
             this.back.type = "button"
             this.back.textContent = "\u21ba"
             this.back.addEventListener("click", () => this.restore(), { signal })
@@ -171,7 +171,7 @@ class GroupView {
         this.group = group
         tell(title, group.title)
         body.ariaLabel = group.title
-        back.title = back.ariaLabel = said(form.host.texts, "form.back_group", { group: group.title })
+        back.title = back.ariaLabel = phrase(form.host.texts, "form.back_group", { group: group.title })
         const rows = new Map<string, HTMLElement[]>(), buttons = new Map<HTMLElement, HTMLElement[]>()
         let run: HTMLElement | null = null // to which a further button belongs
         for (const field of group.fields) {
@@ -226,7 +226,7 @@ class GroupView {
             if (row.field.kind === "switch" || row.field.on != null) on += value ? 1 : 0
             else if (value !== "") parts.push(row.brief(value))
         }
-        if (on) parts.push(said(texts, "form.count_on", { count: String(on) }))
+        if (on) parts.push(phrase(texts, "form.count_on", { count: String(on) }))
         return parts.join(" · ") || group.rest || ""
     }
 

@@ -2,7 +2,7 @@
 
 import type { ClassMessage } from "../channel/messages"
 import { made } from "../core/dom"
-import { said, type Texts } from "../core/words"
+import { phrase, type Texts } from "../core/words"
 import { icon, type Icon } from "./icons"
 import { pressed } from "./sheet"
 
@@ -23,7 +23,7 @@ export class Header {
     constructor(private readonly texts: Texts, go: (place: Destination) => void) {
         this.element.id = "op-head"
         const button = (place: keyof typeof ICONS) => {
-            const name = said(texts, KEYS[place])
+            const name = phrase(texts, KEYS[place])
             const named = pressed(place, icon(ICONS[place]), () => go(place))
             named.append(made("span", "", name))
             return Object.assign(named, { title: name, ariaLabel: name })
@@ -42,9 +42,9 @@ export class Header {
         const { seat, brand, texts } = this
         seat.hidden = place === "none"
         brand.hidden = !seat.hidden
-        const room = said(texts, "class.of", { code })
+        const room = phrase(texts, "class.of", { code })
         if (place === "member") seat.replaceChildren(made("b", "", made("bdi", "", name)), made("small", "", room))
-        else seat.replaceChildren(said(texts, "class.join"))
-        seat.ariaLabel = seat.title = place === "member" ? `${name} · ${room}` : said(texts, "class.join")
+        else seat.replaceChildren(phrase(texts, "class.join"))
+        seat.ariaLabel = seat.title = place === "member" ? `${name} · ${room}` : phrase(texts, "class.join")
     }
 }

@@ -2,7 +2,7 @@
 
 import type { GlossaryEntry, HelpSheet, ShownKey } from "../channel/messages"
 import { made } from "../core/dom"
-import { said, type Texts } from "../core/words"
+import { phrase, type Texts } from "../core/words"
 import { pressed, SheetDialog } from "./sheet"
 
 /** What the help names, in this order. */
@@ -18,12 +18,12 @@ const KINDS: Record<string, readonly string[]> = {
 
 /** `point`: shows on the stage what is what. */
 export function help(texts: Texts, { glossary }: HelpSheet, keys: readonly ShownKey[], point: () => void): SheetDialog {
-    const sheet = new SheetDialog(texts, "help", said(texts, "help.title"))
-    const show = pressed("main", said(texts, "help.point"), () => {
+    const sheet = new SheetDialog(texts, "help", phrase(texts, "help.title"))
+    const show = pressed("main", phrase(texts, "help.point"), () => {
         sheet.close()
         point()
     })
-    const aids = made("dl", "aids", ...AIDS.flatMap(name => [made("dt", "", said(texts, `aid.${name}`)), made("dd", "", said(texts, `aid.${name}_means`))]))
+    const aids = made("dl", "aids", ...AIDS.flatMap(name => [made("dt", "", phrase(texts, `aid.${name}`)), made("dd", "", phrase(texts, `aid.${name}_means`))]))
     sheet.body.append(aids, show, keyTable(texts, keys), glossaryOf(texts, "glossary.to_terms", glossary, "plain", "term"),
         glossaryOf(texts, "glossary.to_words", [...glossary].sort((a, b) => a.term.localeCompare(b.term)), "term", "plain"))
     sheet.open(show)
@@ -34,14 +34,14 @@ function keyTable(texts: Texts, keys: readonly ShownKey[]): HTMLElement {
     const kinds = Object.entries(KINDS).map(([kind, names]) => {
         const rows = names.flatMap(name => keys.filter(key => key.name === name)).map(({ shown, does }) =>
             made("tr", "", made("td", "", ...shown.split(" ").map(each => made("kbd", "", each))), made("td", "", does)))
-        return made("tbody", "", made("tr", "", Object.assign(made("th", "", said(texts, `keys.${kind}`)), { colSpan: 2 })), ...rows)
+        return made("tbody", "", made("tr", "", Object.assign(made("th", "", phrase(texts, `keys.${kind}`)), { colSpan: 2 })), ...rows)
     })
-    return folded(said(texts, "help.keys"), made("table", "keys", ...kinds), made("p", "", said(texts, "help.own_keys")))
+    return folded(phrase(texts, "help.keys"), made("table", "keys", ...kinds), made("p", "", phrase(texts, "help.own_keys")))
 }
 
 function glossaryOf(texts: Texts, title: string, entries: readonly GlossaryEntry[], first: "plain" | "term", second: "plain" | "term"): HTMLElement {
     const items = entries.flatMap(entry => [made("dt", "", entry[first]), made("dd", "", made("b", "", entry[second]), ` ${entry.means} ${entry.lesson}`)])
-    return folded(said(texts, title), made("dl", "", ...items))
+    return folded(phrase(texts, title), made("dl", "", ...items))
 }
 
 function folded(title: string, ...inside: HTMLElement[]): HTMLElement {

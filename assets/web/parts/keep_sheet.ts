@@ -2,7 +2,7 @@
 
 import type { Command, KeepSheet, MakeFile, PageMessage } from "../channel/messages"
 import { made, refuse, switchInput, tell } from "../core/dom"
-import { said, type Texts } from "../core/words"
+import { phrase, type Texts } from "../core/words"
 import { pressed, SheetDialog } from "./sheet"
 
 const FILES: Record<MakeFile["file"], string> = { table: "export.table", picture: "export.picture", film: "export.film", report: "keep.report" }
@@ -16,21 +16,21 @@ export class Keep {
     private code = ""
 
     constructor(private readonly texts: Texts, { code, until }: KeepSheet, private readonly send: Send, closed: () => void) {
-        const sheet = (this.sheet = new SheetDialog(texts, "keep", said(texts, "keep.title"), closed))
+        const sheet = (this.sheet = new SheetDialog(texts, "keep", phrase(texts, "keep.title"), closed))
         this.refusal.role = "alert"
-        const share = pressed("main", said(texts, "keep.share"), () => send({ do: "Share" }))
-        const sharing = made("section", "", made("h3", "", said(texts, "keep.sharing")), share, this.shared,
+        const share = pressed("main", phrase(texts, "keep.share"), () => send({ do: "Share" }))
+        const sharing = made("section", "", made("h3", "", phrase(texts, "keep.sharing")), share, this.shared,
             this.typed("keep.paste", "keep.paste_hint", "keep.use", text => {
                 sheet.close()
                 send({ do: "UseShared", text })
             }))
-        const files = made("section", "", made("h3", "", said(texts, "export.title")), made("div", "row", ...(["table", "picture", "film"] as const).map(file => this.file(file))))
+        const files = made("section", "", made("h3", "", phrase(texts, "export.title")), made("div", "row", ...(["table", "picture", "film"] as const).map(file => this.file(file))))
         const withCode = switchInput()
-        const record = made("section", "", made("h3", "", said(texts, "keep.record")), this.file("report", () => withCode.checked))
+        const record = made("section", "", made("h3", "", phrase(texts, "keep.record")), this.file("report", () => withCode.checked))
         sheet.body.append(sharing, files, record)
         if (code) {
-            record.append(made("label", "row", made("span", "", said(texts, "keep.with_code")), withCode), made("p", "note", said(texts, "keep.with_code_means")))
-            sheet.body.prepend(made("section", "", made("h3", "", said(texts, "keep.coming_back")), made("p", "", said(texts, "keep.yours")),
+            record.append(made("label", "row", made("span", "", phrase(texts, "keep.with_code")), withCode), made("p", "note", phrase(texts, "keep.with_code_means")))
+            sheet.body.prepend(made("section", "", made("h3", "", phrase(texts, "keep.coming_back")), made("p", "", phrase(texts, "keep.yours")),
                 this.codeBox(code), made("p", "note", until),
                 this.typed("keep.other", "keep.other_hint", "keep.go", typed => send({ is: "enter", code: typed }))))
         }
@@ -46,7 +46,7 @@ export class Keep {
     show(shared: string): void {
         if (!shared || shared === this.code) return
         this.code = shared
-        this.shared.replaceChildren(made("p", "", said(this.texts, "keep.shared")), this.codeBox(shared))
+        this.shared.replaceChildren(made("p", "", phrase(this.texts, "keep.shared")), this.codeBox(shared))
     }
 
     /** Say how it stands with a file, or why a code was refused. */
@@ -54,7 +54,7 @@ export class Keep {
 
     /** A button for a file, of whose making the page tells then. */
     private file(file: MakeFile["file"], withCode = () => false): HTMLElement {
-        return pressed("", said(this.texts, FILES[file]), () => {
+        return pressed("", phrase(this.texts, FILES[file]), () => {
             this.sheet.close()
             this.send({ is: "make", file, with_code: withCode() })
         })
@@ -64,16 +64,16 @@ export class Keep {
         const { texts } = this
         const shown = made("code", "", code)
         shown.translate = false
-        const copy = pressed("copy", said(texts, "code.copy"), () => void copied(shown).then(() => tell(copy, said(texts, "code.copied"))))
+        const copy = pressed("copy", phrase(texts, "code.copy"), () => void copied(shown).then(() => tell(copy, phrase(texts, "code.copied"))))
         return made("div", "code", shown, copy)
     }
 
     /** A field for a code, and the button that uses it. */
     private typed(label: string, hint: string, act: string, use: (text: string) => void): HTMLElement {
         const { texts } = this
-        const field = Object.assign(made("input", ""), { type: "text", autocomplete: "off", autocapitalize: "off", spellcheck: false, title: said(texts, hint) })
-        const name = made("label", "", made("span", "", said(texts, label)), field)
-        const form = made("form", "typed", name, Object.assign(made("button", "", said(texts, act)), { type: "submit" }))
+        const field = Object.assign(made("input", ""), { type: "text", autocomplete: "off", autocapitalize: "off", spellcheck: false, title: phrase(texts, hint) })
+        const name = made("label", "", made("span", "", phrase(texts, label)), field)
+        const form = made("form", "typed", name, Object.assign(made("button", "", phrase(texts, act)), { type: "submit" }))
         form.addEventListener("submit", event => {
             event.preventDefault()
             tell(this.refusal, "")

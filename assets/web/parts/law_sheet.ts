@@ -2,12 +2,12 @@
 
 import type { LawSheet } from "../channel/messages"
 import { made } from "../core/dom"
-import { said, type Texts } from "../core/words"
+import { phrase, type Texts } from "../core/words"
 import { SheetDialog } from "./sheet"
 
 /** `present`: the laws of the two robots; a typed one is its own name. */
 export function aboutLaws(texts: Texts, { laws, bounds, own, names }: LawSheet, present: readonly string[]): SheetDialog {
-    const sheet = new SheetDialog(texts, "laws", said(texts, "laws.about"))
+    const sheet = new SheetDialog(texts, "laws", phrase(texts, "laws.about"))
     const typing = present.some(law => !laws.some(each => each.name === law))
     const described = laws.map(law => {
         const heading = made("summary", "", made("b", "", law.label), " ", made("span", "", law.does))
@@ -23,9 +23,9 @@ export function aboutLaws(texts: Texts, { laws, bounds, own, names }: LawSheet, 
         code.translate = false
         return made("tr", "", made("td", "", code), made("td", "", means), made("td", "", unit))
     })
-    const heads = ["laws.name", "laws.meaning", "laws.unit"].map(key => Object.assign(made("th", "", said(texts, key)), { scope: "col" }))
+    const heads = ["laws.name", "laws.meaning", "laws.unit"].map(key => Object.assign(made("th", "", phrase(texts, key)), { scope: "col" }))
     const table = made("table", "", made("thead", "", made("tr", "", ...heads)), made("tbody", "", ...rows))
-    const typed = made("section", "", made("h3", "", said(texts, "laws.own_heading")), ...own.map(each => made("p", "", each)), made("div", "wide", table))
+    const typed = made("section", "", made("h3", "", phrase(texts, "laws.own_heading")), ...own.map(each => made("p", "", each)), made("div", "wide", table))
     const known = made("section", "", ...described, made("p", "", bounds))
     sheet.body.append(...(typing ? [typed, known] : [known, typed]))
     sheet.open()

@@ -2,7 +2,7 @@
 
 import { made } from "../core/dom"
 import type { PageData } from "../core/lesson_data"
-import { said } from "../core/words"
+import { phrase } from "../core/words"
 
 const MARKED = "[data-symbol]"
 
@@ -24,7 +24,7 @@ export class Legend {
         const names = [...new Set([...words.querySelectorAll<HTMLElement>(MARKED)].map(nameOf))]
         if (!names.length) return
         const entries = names.map(name => made("li", "", this.button(words, name)))
-        const summary = made("summary", "", said(this.page, "site.symbols"))
+        const summary = made("summary", "", phrase(this.page, "site.symbols"))
         words.append(made("details", "symbols script-only", summary, made("ul", "", ...entries)))
     }
 

@@ -6,7 +6,7 @@ import type { Point } from "../core/figure_data"
 import { arrow, covers, disc, letters, Sheet, stroke, tones, type Box, type Pixel } from "../core/ink"
 import { niceStep } from "../core/numbers"
 import { drawShapes, shapesOf } from "../core/symbols"
-import { said, significant, written, type Texts } from "../core/words"
+import { phrase, significant, written, type Texts } from "../core/words"
 
 const FACTORS = [1.5, 3, 6, 12, 20]
 const FITS = 0.62 // of the radius: what is to be seen is within
@@ -121,11 +121,11 @@ export class Lens {
 
     private read(sample: SideSample): void {
         const { texts, factor, engine, side } = this
-        const name = said(texts, "lens.name", { law: engine.texts[side]!.title })
+        const name = phrase(texts, "lens.name", { law: engine.texts[side]!.title })
         if (this.sheet.canvas.ariaLabel !== name) this.sheet.canvas.ariaLabel = name
         tell(this.distance, `${written(texts, 1e3 * sample.distance, 1)} mm`)
         const acts = sample.held ? "chart.held" : sample.pulled ? "chart.pulled" : ""
-        tell(this.more, [acts && said(texts, acts), `×${written(texts, factor)}`].filter(Boolean).join(" · "))
+        tell(this.more, [acts && phrase(texts, acts), `×${written(texts, factor)}`].filter(Boolean).join(" · "))
     }
 
     private grid(ink: CanvasRenderingContext2D, middle: Pixel, radius: number): void {
@@ -165,10 +165,10 @@ export class Lens {
         disc(ink, tip, 5.5, colour)
         this.boxes = [around(tip, 8), around(closest, 6), around(from, sample.reference ? 10 : 6)]
         this.force(ink, tip, pixel, sample, radius)
-        const named: [Pixel, string][] = [[closest, said(texts, "lens.closest")]]
-        if (sample.reference) named.unshift([from, said(texts, "lens.reference")])
+        const named: [Pixel, string][] = [[closest, phrase(texts, "lens.closest")]]
+        if (sample.reference) named.unshift([from, phrase(texts, "lens.reference")])
         for (const [at, name] of named) this.name(ink, name, at, tip, radius, dark)
-        if (sample.straight) this.name(ink, said(texts, "lens.straight"), pixel(sample.straight), tip, radius, all.soft)
+        if (sample.straight) this.name(ink, phrase(texts, "lens.straight"), pixel(sample.straight), tip, radius, all.soft)
     }
 
     /** Show what a symbol means, in the plane in which the lens looks. */

@@ -2,14 +2,14 @@
 
 import type { Command, LessonCard, LessonSheet, RouteCard } from "../channel/messages"
 import { made } from "../core/dom"
-import { said, type Texts } from "../core/words"
+import { phrase, type Texts } from "../core/words"
 import { icon } from "./icons"
 import { pressed, SheetDialog } from "./sheet"
 
 type Send = (command: Command) => void
 
 export function chooseLesson(texts: Texts, { lessons, routes, open }: LessonSheet, send: Send): SheetDialog {
-    const sheet = new SheetDialog(texts, "lessons", said(texts, "lesson.choose"))
+    const sheet = new SheetDialog(texts, "lessons", phrase(texts, "lesson.choose"))
     const go: Send = command => {
         sheet.close()
         send(command)
@@ -18,7 +18,7 @@ export function chooseLesson(texts: Texts, { lessons, routes, open }: LessonShee
     const cards = lessons.map(lesson => [lesson, cardOf(texts, lesson, lesson === next, () => go({ do: "OpenLesson", name: lesson.name }))] as const)
     const list = made("ol", "lessons", ...cards.map(([, card]) => made("li", "", card)))
     sheet.body.append(list)
-    if (routes.length) sheet.body.append(made("h3", "", said(texts, "route.routes")), ...routes.map(route => routeOf(texts, route, go)))
+    if (routes.length) sheet.body.append(made("h3", "", phrase(texts, "route.routes")), ...routes.map(route => routeOf(texts, route, go)))
     sheet.open(cards.find(([lesson]) => lesson === next)?.[1])
     return sheet
 }
@@ -30,15 +30,15 @@ function cardOf(texts: Texts, lesson: LessonCard, isNext: boolean, act: () => vo
     ring.setAttribute("aria-hidden", "true")
     const name = lesson.number ? `${lesson.number}. ${lesson.title}` : lesson.title
     const state = lesson.finished ? "lesson.done" : lesson.begun ? "lesson.begun" : ""
-    const facts = [...(state ? [said(texts, state)] : []), ...lesson.facts].join(" · ")
+    const facts = [...(state ? [phrase(texts, state)] : []), ...lesson.facts].join(" · ")
     const card = pressed(`card${isNext ? " next" : ""}`, "", act)
     card.append(ring, made("b", "", name), made("span", "summary", lesson.summary), made("span", "facts", facts))
     return card
 }
 
 function routeOf(texts: Texts, { name, title, summary, minutes, stops }: RouteCard, go: Send): HTMLElement {
-    const follow = pressed("", said(texts, "route.follow"), () => go({ do: "FollowRoute", name }))
-    follow.setAttribute("aria-label", `${said(texts, "route.follow")}: ${title}`)
+    const follow = pressed("", phrase(texts, "route.follow"), () => go({ do: "FollowRoute", name }))
+    follow.setAttribute("aria-label", `${phrase(texts, "route.follow")}: ${title}`)
     const heading = made("summary", "", made("b", "", title), " ", made("span", "facts", minutes))
     return made("details", "route", heading, made("p", "", summary), made("ul", "", ...stops.map(stop => made("li", "", stop))), follow)
 }

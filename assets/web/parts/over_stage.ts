@@ -3,7 +3,7 @@
 import { made, tell } from "../core/dom"
 import { shown } from "../core/engine"
 import { projected, shares } from "../core/placing"
-import { said, written, type Texts } from "../core/words"
+import { phrase, written, type Texts } from "../core/words"
 import type { RemoteEngine } from "../channel/channel"
 
 export class OverStage {
@@ -44,8 +44,8 @@ export class OverStage {
         })
         const time = written(texts, shown(engine).time, 1)
         const { drawn, machine, waits } = engine.lab!
-        const building = drawn || !webgl.works ? "" : said(texts, "stage.building", { robot: machine })
-        tell(this.still, building || waits || (past !== null ? said(texts, "stage.past", { time }) : running ? "" : said(texts, "stage.paused")))
+        const building = drawn || !webgl.works ? "" : phrase(texts, "stage.building", { robot: machine })
+        tell(this.still, building || waits || (past !== null ? phrase(texts, "stage.past", { time }) : running ? "" : phrase(texts, "stage.paused")))
         this.element.classList.toggle("undrawn", !drawn)
         this.arrange()
     }

@@ -3,7 +3,7 @@
 
 import { made, tell } from "../core/dom"
 import { keepScroll } from "../core/drafts"
-import { said, type Texts } from "../core/words"
+import { phrase, type Texts } from "../core/words"
 import { icon } from "./icons"
 import { pressed } from "./sheet"
 
@@ -17,11 +17,11 @@ export class Panel {
 
     /** `opener`: the button that opens it as a drawer. */
     constructor(texts: Texts, private readonly opener: HTMLButtonElement, signal: AbortSignal) {
-        const name = said(texts, "lesson.controls")
+        const name = phrase(texts, "lesson.controls")
         const cross = pressed("op-cross", icon("close"), () => this.show(false))
-        cross.ariaLabel = cross.title = said(texts, "help.close")
+        cross.ariaLabel = cross.title = phrase(texts, "help.close")
         this.handle = pressed("handle", "", () => {})
-        this.handle.ariaLabel = said(texts, "panel.handle")
+        this.handle.ariaLabel = phrase(texts, "panel.handle")
         this.element.id = "op-panel"
         this.element.ariaLabel = name
         this.element.append(made("div", "over", this.handle, made("h2", "", name), cross), this.frozen, this.body)

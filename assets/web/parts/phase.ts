@@ -3,7 +3,7 @@
 import { made } from "../core/dom"
 import { shown, type Engine, type RowData } from "../core/engine"
 import { disc, letters, Sheet, stroke, tones, type Pixel } from "../core/ink"
-import { said, significant, type Texts } from "../core/words"
+import { phrase, significant, type Texts } from "../core/words"
 import { axisFor, type Range } from "./axis"
 
 const SECONDS = 3 // of each robot's way
@@ -19,7 +19,7 @@ export class PhasePlane {
     constructor(private readonly texts: Texts, private readonly engine: Engine, private readonly rows: readonly [RowData, RowData], changed: () => void) {
         this.sheet = new Sheet(changed)
         const { canvas } = this.sheet
-        Object.assign(canvas, { role: "img", ariaLabel: said(texts, "plot.phase_name") })
+        Object.assign(canvas, { role: "img", ariaLabel: phrase(texts, "plot.phase_name") })
         this.element = made("div", "phase", canvas)
         this.ranges = rows.map(({ least: [bottom, top] }) => ({ bottom, top })) as [Range, Range]
     }

@@ -1,7 +1,7 @@
 // The menu of the plots: which quantities are shown under the stage.
 
 import { made } from "../core/dom"
-import { said, type Texts } from "../core/words"
+import { phrase, type Texts } from "../core/words"
 
 export class PlotMenu {
     private readonly button = made("button", "")
@@ -12,8 +12,8 @@ export class PlotMenu {
     /** `choose` is called with the name of a row, and whether it is wanted. */
     constructor(texts: Texts, private readonly choose: (name: string, on: boolean) => void) {
         const { button, list } = this
-        Object.assign(button, { type: "button", textContent: said(texts, "plots.menu"), title: said(texts, "plots.menu_hint") })
-        Object.assign(list, { popover: "auto", role: "group", ariaLabel: said(texts, "plots.menu") })
+        Object.assign(button, { type: "button", textContent: phrase(texts, "plots.menu"), title: phrase(texts, "plots.menu_hint") })
+        Object.assign(list, { popover: "auto", role: "group", ariaLabel: phrase(texts, "plots.menu") })
         button.ariaHasPopup = "true"
         button.ariaExpanded = "false"
         button.popoverTargetElement = list

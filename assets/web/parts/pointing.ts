@@ -5,7 +5,7 @@ import { made, svg } from "../core/dom"
 import { shown, type Vector } from "../core/engine"
 import type { Pixel } from "../core/ink"
 import { projected } from "../core/placing"
-import { said, type Texts } from "../core/words"
+import { phrase, type Texts } from "../core/words"
 import { pressed } from "./sheet"
 
 const GAP = 10, AWAY = 56 // [px] between labels, and from a label to its thing
@@ -13,13 +13,13 @@ const GAP = 10, AWAY = 56 // [px] between labels, and from a label to its thing
 /** Open the names over the page. */
 export function pointAtStage(texts: Texts, engine: RemoteEngine): void {
     const dialog = made("dialog", "op-pointing"), lines = svg("svg", { "aria-hidden": "true" })
-    dialog.ariaLabel = said(texts, "help.point")
+    dialog.ariaLabel = phrase(texts, "help.point")
     const labels = Object.entries(places(engine)).flatMap(([name, place]) => {
         if (!place || !isInside(place)) return []
-        const label = made("p", "", made("b", "", said(texts, `aid.${name}`)), " ", said(texts, `aid.${name}_means`))
+        const label = made("p", "", made("b", "", phrase(texts, `aid.${name}`)), " ", phrase(texts, `aid.${name}_means`))
         return [{ label, place }]
     })
-    dialog.append(lines, ...labels.map(({ label }) => label), pressed("", said(texts, "help.close"), () => dialog.close()))
+    dialog.append(lines, ...labels.map(({ label }) => label), pressed("", phrase(texts, "help.close"), () => dialog.close()))
     dialog.addEventListener("click", () => dialog.close())
     dialog.addEventListener("close", () => dialog.remove())
     document.body.append(dialog)

@@ -3,7 +3,7 @@
 import { made } from "../core/dom"
 import { letters, Sheet, stroke, tones, type Pixel, type Tone } from "../core/ink"
 import { niceStep } from "../core/numbers"
-import { said, significant, type Texts } from "../core/words"
+import { phrase, significant, type Texts } from "../core/words"
 
 export interface Pole {
     along: boolean
@@ -79,8 +79,8 @@ export class PolePlane {
             stroke(ink, [[x - scale * value, y - 3], [x - scale * value, y + 3]], soft, 1)
             write(significant(texts, -value, 3), [x - scale * value, y + 13], "center")
         }
-        write(said(texts, "gains.rate"), [4, height - 8], "left")
-        write(said(texts, "gains.swing"), [x - 4, 8], "right")
+        write(phrase(texts, "gains.rate"), [4, height - 8], "left")
+        write(phrase(texts, "gains.swing"), [x - 4, 8], "right")
         this.legend(ink)
         for (const { along, real, imaginary } of poles) {
             const at: Pixel = [x + scale * real, y - scale * imaginary]
@@ -95,7 +95,7 @@ export class PolePlane {
         ink.textAlign = "left"
         let x = 4
         for (const [along, sign, key] of [[false, "×", "gains.across"], [true, "+", "gains.along"]] as const)
-            for (const [text, font, fillStyle] of [[sign, BOLD, tones()[toneOf(along)]], [said(texts, key), FONT, dark]] as const) {
+            for (const [text, font, fillStyle] of [[sign, BOLD, tones()[toneOf(along)]], [phrase(texts, key), FONT, dark]] as const) {
                 Object.assign(ink, { font, fillStyle })
                 ink.fillText(text, x, 8)
                 x += ink.measureText(text).width + (text === sign ? 4 : 10)

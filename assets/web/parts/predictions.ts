@@ -3,7 +3,7 @@
 import { made, tell } from "../core/dom"
 import { draftOf, keepDraft } from "../core/drafts"
 import type { BlockData, PageData, Script, SketchData, StepData, Answer, Curves } from "../core/lesson_data"
-import { said, significant, type Texts } from "../core/words"
+import { phrase, significant, type Texts } from "../core/words"
 import { given, type Notes } from "../lessons/notes"
 import type { Student } from "../lessons/student"
 import { judged } from "./asked"
@@ -74,15 +74,15 @@ export function predict(page: PageData, prediction: Prediction, student: Student
             chart.draw()
         })
         const seconds = significant(page, data.seconds, 4)
-        chart.sheet.canvas.setAttribute("aria-label", said(page, "site.sketch", { quantity: data.label, unit: data.unit, seconds }))
+        chart.sheet.canvas.setAttribute("aria-label", phrase(page, "site.sketch", { quantity: data.label, unit: data.unit, seconds }))
         chart.ghost = curveOf(answerKept())
-        const hint = () => (chart.hint = chart.ghost ? "" : said(page, "chart.draw"))
+        const hint = () => (chart.hint = chart.ghost ? "" : phrase(page, "chart.draw"))
         hint()
         const drawing = new Drawing(chart, () => {
             const { times, values } = chart.ghost ?? {}
             answer = times && values ? { times: [...times], values: [...values] } : {}
             answers()
-            told.textContent = said(page, times ? "lesson.drawn" : "site.draw_first")
+            told.textContent = phrase(page, times ? "lesson.drawn" : "site.draw_first")
             hint()
             chart.draw()
             keep()
@@ -94,7 +94,7 @@ export function predict(page: PageData, prediction: Prediction, student: Student
             answer = { times: draft.times!, values: draft.values! }
         }
         board = chart.element
-        told.textContent = said(page, "site.draw_first")
+        told.textContent = phrase(page, "site.draw_first")
         committed = kept => {
             drawing.open = false
             chart.ghost = curveOf(kept)
@@ -118,13 +118,13 @@ export function predict(page: PageData, prediction: Prediction, student: Student
             const found = element.querySelector<HTMLSelectElement | HTMLTextAreaElement>(field)
             if (found && value !== undefined) found.value = String(value)
         }
-        if (answer.times) told.textContent = said(page, "lesson.drawn")
+        if (answer.times) told.textContent = phrase(page, "lesson.drawn")
         answers()
     }
     const show = () => {
         const kept = answerKept()
         if (!kept) return
-        if (given(kept) || commit.disabled) tell(told, said(page, given(kept) ? "lesson.committed" : "site.skipped"))
+        if (given(kept) || commit.disabled) tell(told, phrase(page, given(kept) ? "lesson.committed" : "site.skipped"))
         if (!given(kept) || asked.hidden) return
         asked.hidden = true
         element.querySelectorAll<HTMLInputElement>("input").forEach(input => (input.disabled = true))
@@ -149,7 +149,7 @@ export class Comparison {
 
     constructor(page: PageData, private readonly prediction: Prediction, private readonly notes: Notes) {
         const { data } = prediction
-        this.again = made("p", "", said(page, "site.again"))
+        this.again = made("p", "", phrase(page, "site.again"))
         this.again.hidden = true
         if (data.kind === "sketch") {
             const chart = (this.chart = chartOf(page, prediction, data, () => chart.draw()))
@@ -204,7 +204,7 @@ function chartOf(page: PageData, { step }: Prediction, data: SketchData, changed
 function chartWith(page: Texts, data: SketchData, script: Script | null, changed: () => void): Chart {
     const { label, unit, bottom, top, quantity, seconds, radius } = data
     const axes: Axes = { label, unit, bottom, top }
-    if (quantity === "distance" && radius) axes.mark = { value: 1e3 * radius, label: said(page, "chart.centre") }
+    if (quantity === "distance" && radius) axes.mark = { value: 1e3 * radius, label: phrase(page, "chart.centre") }
     const chart = new Chart(page, axes, changed)
     chart.sheet.canvas.setAttribute("aria-label", `${label} [${unit}]`)
     chart.until = seconds

@@ -2,12 +2,12 @@
 
 import type { Command, PageMessage, RobotSheet } from "../channel/messages"
 import { made } from "../core/dom"
-import { said, type Texts } from "../core/words"
+import { phrase, type Texts } from "../core/words"
 import { pressed, SheetDialog } from "./sheet"
 
 /** Open the robots; the present one has the focus. */
 export function chooseRobot(texts: Texts, { robots }: RobotSheet, present: string, send: (message: Command | PageMessage) => void): SheetDialog {
-    const sheet = new SheetDialog(texts, "robots", said(texts, "robots.choose"))
+    const sheet = new SheetDialog(texts, "robots", phrase(texts, "robots.choose"))
     const cards = robots.map(robot => {
         const card = pressed("card", "", () => {
             sheet.close()
@@ -24,7 +24,7 @@ export function chooseRobot(texts: Texts, { robots }: RobotSheet, present: strin
     })
     const grid = made("div", "grid", ...cards)
     grid.role = "group"
-    grid.ariaLabel = said(texts, "robots.choose")
+    grid.ariaLabel = phrase(texts, "robots.choose")
     grid.addEventListener("keydown", event => {
         const at = cards.indexOf(document.activeElement as HTMLButtonElement)
         const across = cards.filter(card => card.offsetTop === cards[0]!.offsetTop).length

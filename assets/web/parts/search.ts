@@ -1,7 +1,7 @@
 // One search for everything that the lab has: settings, robots, laws, paths, lessons, and what keys do.
 
 import { made, tell } from "../core/dom"
-import { said, type Texts } from "../core/words"
+import { phrase, type Texts } from "../core/words"
 import { SheetDialog } from "./sheet"
 
 const MOST = 12 // results that are shown
@@ -26,32 +26,32 @@ export class Search {
     /** `entries`: everything, asked for whenever the search is opened. */
     constructor(private readonly texts: Texts, private readonly entries: () => Entry[]) {
         const { input, list, none } = this
-        this.sheet = new SheetDialog(texts, "search", said(texts, "search.title"))
-        Object.assign(input, { type: "text", autocomplete: "off", enterKeyHint: "search", spellcheck: false, ariaLabel: said(texts, "search.title") })
-        input.placeholder = said(texts, "search.hint")
+        this.sheet = new SheetDialog(texts, "search", phrase(texts, "search.title"))
+        Object.assign(input, { type: "text", autocomplete: "off", enterKeyHint: "search", spellcheck: false, ariaLabel: phrase(texts, "search.title") })
+        input.placeholder = phrase(texts, "search.hint")
         const told = { role: "combobox", "aria-expanded": "true", "aria-controls": "op-results", "aria-autocomplete": "list" }
         for (const [name, value] of Object.entries(told)) input.setAttribute(name, value)
         list.id = "op-results"
         list.role = "listbox"
-        list.ariaLabel = said(texts, "search.found")
+        list.ariaLabel = phrase(texts, "search.found")
         none.setAttribute("role", "status")
-        input.addEventListener("input", () => this.look())
+        input.addEventListener("input", () => this.find())
         input.addEventListener("keydown", event => this.key(event))
         this.sheet.body.append(input, list, none)
     }
 
     open(): void {
         this.input.value = ""
-        this.look()
+        this.find()
         this.sheet.open(this.input)
     }
 
     /** Show what was found when more is known. */
     renew(): void {
-        if (this.sheet.isOpen) this.look()
+        if (this.sheet.isOpen) this.find()
     }
 
-    private look(): void {
+    private find(): void {
         const { texts, input, list, none } = this
         this.found = ranked(this.entries(), input.value).slice(0, MOST)
         this.chosen = 0
@@ -64,7 +64,7 @@ export class Search {
             return row
         }))
         this.choose(0)
-        tell(none, this.found.length ? "" : said(texts, "search.none"))
+        tell(none, this.found.length ? "" : phrase(texts, "search.none"))
     }
 
     private choose(at: number): void {

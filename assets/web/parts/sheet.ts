@@ -2,7 +2,7 @@
 // the focus goes back to what has opened it.
 
 import { made, tell } from "../core/dom"
-import { said, type Texts } from "../core/words"
+import { phrase, type Texts } from "../core/words"
 import { icon } from "./icons"
 
 export class SheetDialog {
@@ -16,7 +16,7 @@ export class SheetDialog {
         const heading = (this.heading = made("h2", "", title))
         heading.id = `op-sheet-${name}`
         const cross = pressed("op-cross", icon("close"), () => this.close())
-        cross.ariaLabel = cross.title = said(texts, "help.close")
+        cross.ariaLabel = cross.title = phrase(texts, "help.close")
         this.body = made("div", "body")
         this.element = made("dialog", `op-sheet ${name}`, made("header", "", heading, cross), this.body)
         this.element.setAttribute("aria-labelledby", heading.id)

@@ -3,7 +3,7 @@
 
 import { made } from "../core/dom"
 import type { PageData } from "../core/lesson_data"
-import { said } from "../core/words"
+import { phrase } from "../core/words"
 import { given, type Notes } from "../lessons/notes"
 import type { Student } from "../lessons/student"
 import { ask } from "./asked"
@@ -138,19 +138,19 @@ export class StepView {
             button.disabled = waits || !robots.ready
             button.hidden = robots.playing
             button.classList.toggle("main", !notes.played[String(index)])
-            button.textContent = said(page, notes.played[String(index)] ? "lesson.replay" : "lesson.play")
+            button.textContent = phrase(page, notes.played[String(index)] ? "lesson.replay" : "lesson.play")
         }
         section.querySelector(".before")?.remove()
-        if (waits) (told ?? section.querySelector("h2"))!.after(made("p", "before op-text", said(page, "lesson.predict_before")))
+        if (waits) (told ?? section.querySelector("h2"))!.after(made("p", "before op-text", phrase(page, "lesson.predict_before")))
         told?.querySelectorAll("span").forEach(each => each.remove())
-        if (robots.playing && !section.querySelector(".op-watch")) told?.append(made("span", "", said(page, "lesson.playing")))
+        if (robots.playing && !section.querySelector(".op-watch")) told?.append(made("span", "", phrase(page, "lesson.playing")))
         const read = section.dataset["read"] === "yes"
         const open = !waits && (happened || read)
         section.classList.toggle("veiled", !open)
         if (step.script) section.querySelector(".still")?.classList.toggle("always", open && !robots.ready)
         section.querySelector(".read")?.remove()
         if (!open && !waits && !robots.playing) {
-            const reading = made("button", "read", said(page, "lesson.read"))
+            const reading = made("button", "read", phrase(page, "lesson.read"))
             reading.type = "button"
             reading.addEventListener("click", () => {
                 section.dataset["read"] = "yes"
@@ -160,7 +160,7 @@ export class StepView {
         }
         this.compare()
         if (this.played && happened && !robots.playing)
-            robots.tell([said(page, "lesson.happened"), ...this.compared?.words ?? []].join(" "))
+            robots.tell([phrase(page, "lesson.happened"), ...this.compared?.words ?? []].join(" "))
         this.played = robots.playing
         if (happened && !waits && !robots.playing) this.draw(notes.truths[String(prediction?.step)])
     }
@@ -195,7 +195,7 @@ export class StepView {
         element.querySelectorAll<HTMLButtonElement>("button[data-link]").forEach((button, i) => {
             if (!links[i]) {
                 button.disabled = true
-                button.append(` (${said(this.page, "site.link_only_lab")})`)
+                button.append(` (${phrase(this.page, "site.link_only_lab")})`)
             }
             button.addEventListener("click", () => this.robots.act(place, i))
         })

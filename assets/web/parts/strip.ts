@@ -4,7 +4,7 @@ import { made } from "../core/dom"
 import { shown, type Engine, type Vector } from "../core/engine"
 import type { StepData } from "../core/lesson_data"
 import { recalled, remember } from "../core/memory"
-import { said, written, type Texts } from "../core/words"
+import { phrase, written, type Texts } from "../core/words"
 import type { Chart, Limit } from "./chart"
 import { firstAfter, type Span } from "./curves"
 import { PhasePlane } from "./phase"
@@ -47,7 +47,7 @@ export class Strip {
         this.chosen = Array.isArray(chosen) ? chosen.filter(each => typeof each === "string") : []
         this.menu = new PlotMenu(texts, (name, on) => this.choose(name, on))
         const columns = () => this.rows.flatMap(({ chart, data }) => chart.lines.map(line => ({ ...line, name: this.heading(line.name, data.label), unit: data.unit })))
-        const table = tableOf(texts, () => said(texts, "chart.title"), columns, () => spansOf(this.times, this.kinds))
+        const table = tableOf(texts, () => phrase(texts, "chart.title"), columns, () => spansOf(this.times, this.kinds))
         this.element = made("div", "strip", this.stack, table)
         engine.on(change => {
             this.stale = true
@@ -133,7 +133,7 @@ export class Strip {
         const root = document.documentElement // whose style makes room for the rows
         root.style.setProperty("--op-rows", String(this.rows.length))
         root.classList.toggle("op-rows", this.rows.length > 1 || this.phase !== null)
-        const menu = (name: string) => rows.find(row => row.name === name)?.menu ?? said(texts, "plot.phase")
+        const menu = (name: string) => rows.find(row => row.name === name)?.menu ?? phrase(texts, "plot.phase")
         this.menu.show(possible.filter(name => name !== DISTANCE).map(name => ({ name, menu: menu(name), on: names.includes(name) })))
         this.zoom = this.large
         engine.plot([...new Set([...this.rows.flatMap(row => row.fields), ...(this.phase ? plane.flatMap(row => row.lines[0]!.field) : [])])])
@@ -145,7 +145,7 @@ export class Strip {
     private mark(): void {
         const { chart, engine, texts } = this
         const radius = radiusOf(engine.path.lines[0] ?? [])
-        chart.axes = { ...chart.axes, mark: radius ? { value: 1e3 * radius, label: said(texts, "chart.centre") } : undefined }
+        chart.axes = { ...chart.axes, mark: radius ? { value: 1e3 * radius, label: phrase(texts, "chart.centre") } : undefined }
     }
 
     private follow(now: number): void {
@@ -197,21 +197,21 @@ export class Strip {
             "aria-valuemin": (engine.since(-Infinity)[0]?.time ?? 0).toFixed(1),
             "aria-valuemax": engine.present.time.toFixed(1),
             "aria-valuenow": sample.time.toFixed(1),
-            "aria-valuetext": said(texts, "chart.at", { time: written(texts, sample.time, 1), values }),
+            "aria-valuetext": phrase(texts, "chart.at", { time: written(texts, sample.time, 1), values }),
         }
         for (const [name, value] of Object.entries(told)) handle.setAttribute(name, value)
     }
 
     private hand(): void {
         const { handle, stack, engine, texts } = this
-        Object.assign(handle, { tabIndex: 0, role: "slider", ariaLabel: said(texts, "chart.look"), title: said(texts, "chart.look_hint") })
+        Object.assign(handle, { tabIndex: 0, role: "slider", ariaLabel: phrase(texts, "chart.look"), title: phrase(texts, "chart.look_hint") })
         handle.addEventListener("keydown", event => {
             const { time } = shown(engine)
             const to = event.key === "Home" ? 0 : event.key === "End" || event.key === "Escape" ? null : time + (STEPS[event.key] ?? NaN)
             if (Number.isNaN(to)) return
             event.preventDefault()
             event.stopPropagation()
-            this.look(to)
+            this.seek(to)
         })
         const place = (event: PointerEvent): number => (event.clientX - stack.getBoundingClientRect().left) / this.chart.sheet.zoom
         stack.addEventListener("pointerdown", event => {
@@ -231,14 +231,14 @@ export class Strip {
         const { chart, dragged } = this
         dragged!.x = x
         if (x < chart.x(chart.from)) chart.from = this.first = Math.max(0, this.first - 0.1)
-        this.look(chart.inverse(x, 0)[0])
+        this.seek(chart.inverse(x, 0)[0])
     }
 
-    /** Look at an instant; not before the first one, and at the last one only what is present. */
-    private look(time: number | null): void {
+    /** Show an instant; not before the first one, and at the last one only what is present. */
+    private seek(time: number | null): void {
         const { engine } = this
         const first = engine.since(-Infinity)[0]?.time ?? 0
-        engine.act({ do: "look", at: time === null || time >= engine.present.time ? null : Math.max(time, first) })
+        engine.act({ do: "seek", at: time === null || time >= engine.present.time ? null : Math.max(time, first) })
     }
 }
 

@@ -2,7 +2,7 @@
 
 import { made } from "../core/dom"
 import { niceStep } from "../core/numbers"
-import { said, written, type Texts } from "../core/words"
+import { phrase, written, type Texts } from "../core/words"
 import { valueAt, type Curve, type Span } from "./curves"
 
 /** A curve with a heading. */
@@ -17,7 +17,7 @@ const ROWS = 60 // at about this many instants
 export function tableOf(texts: Texts, label: () => string, columns: () => readonly TableColumn[], spans: () => readonly Span[]): HTMLElement {
     const body = made("div", "wide")
     body.tabIndex = 0 // so that keys scroll it
-    const details = made("details", "table", made("summary", "", said(texts, "chart.table")), body)
+    const details = made("details", "table", made("summary", "", phrase(texts, "chart.table")), body)
     const show = () => {
         const table = rowsOf(texts, columns(), spans())
         table.setAttribute("aria-label", label())
@@ -28,7 +28,7 @@ export function tableOf(texts: Texts, label: () => string, columns: () => readon
 }
 
 function rowsOf(texts: Texts, columns: readonly TableColumn[], spans: readonly Span[]): HTMLElement {
-    const heads = [said(texts, "chart.time"), ...columns.map(({ name, unit }) => `${name} [${unit}]`), said(texts, "chart.acts")]
+    const heads = [phrase(texts, "chart.time"), ...columns.map(({ name, unit }) => `${name} [${unit}]`), phrase(texts, "chart.acts")]
     const row = (tag: "th" | "td", cells: string[]) => made("tr", "", ...cells.map(cell => made(tag, "", cell)))
     const all = columns.flatMap(({ times }) => [times[0] ?? Infinity, times[times.length - 1] ?? -Infinity])
     const [first, last] = [Math.min(...all), Math.max(...all)]
@@ -36,7 +36,7 @@ function rowsOf(texts: Texts, columns: readonly TableColumn[], spans: readonly S
     const seconds = Array.from({ length: Math.max(0, Math.floor((last - first) / step + 1e-9)) + 1 }, (_, i) => first + i * step)
     const body = seconds.filter(Number.isFinite).map(time => {
         const values = columns.map(column => valueAt(column, time)).map(value => (value === null ? "" : written(texts, value, decimals(value))))
-        const acts = spans.filter(span => span.from <= time && time < span.until).map(span => said(texts, `chart.${span.kind}`))
+        const acts = spans.filter(span => span.from <= time && time < span.until).map(span => phrase(texts, `chart.${span.kind}`))
         return row("td", [written(texts, time, 1), ...values, acts.join(", ")])
     })
     return made("table", "", made("thead", "", row("th", heads)), made("tbody", "", ...body))

@@ -3,7 +3,7 @@
 import { made } from "../core/dom"
 import type { PageData, TaskData } from "../core/lesson_data"
 import { general } from "../core/numbers"
-import { localized, said } from "../core/words"
+import { localized, phrase } from "../core/words"
 import type { Verdict } from "../lessons/checks"
 import type { Student } from "../lessons/student"
 
@@ -45,7 +45,7 @@ export class Task {
         this.shown = text
         const done = verdicts.every(verdict => verdict.passed)
         const lines = verdicts.map(verdict => lineOf(verdict, done))
-        if (passed) lines.push(made("li", "right", `✓ ${said(page, "lesson.passed")}${passed.trim()}`))
+        if (passed) lines.push(made("li", "right", `✓ ${phrase(page, "lesson.passed")}${passed.trim()}`))
         element.querySelector(".verdicts")!.replaceChildren(...lines)
         const whys = [...element.querySelectorAll<HTMLDetailsElement>(".after")]
         const told = passed ? whys.find(each => Number(each.dataset["way"]) === way) ?? whys[0] : undefined

@@ -2,7 +2,7 @@
 
 import { made } from "../core/dom"
 import type { Engine } from "../core/engine"
-import { said, written, type Texts } from "../core/words"
+import { phrase, written, type Texts } from "../core/words"
 
 const RATES = [1, 0.5, 0.25, 0.1]
 const KEPT = 800 // [ms]: who presses Hold for longer lets go with it
@@ -39,7 +39,7 @@ export class Transport {
         const buttons = Object.keys(every).filter(name => offered.includes(name)).flatMap(name => every[name]!)
         if (offered.includes("run")) buttons.push(this.rate)
         this.goes = this.button("", ["past.go_on"], "transport.go_on_hint", () => this.engine.act({ do: "goOn" }))
-        const back = this.button("", ["transport.back"], "transport.back_hint", () => this.engine.act({ do: "look", at: null }))
+        const back = this.button("", ["transport.back"], "transport.back_hint", () => this.engine.act({ do: "seek", at: null }))
         this.past = made("div", "past", back, this.goes)
         this.brake = made("div", "brake", this.past, ...(offered.includes("hold") ? [this.held] : []))
         this.element = made("div", "transport", this.brake, ...buttons)
@@ -91,9 +91,9 @@ export class Transport {
 
     /** A button with the width of the longest of its labels, so that nothing beside it moves. */
     private button(name: string, labels: string[], hint: string, act: () => void): HTMLButtonElement {
-        const button = made("button", name, ...labels.map(each => made("span", "", said(this.texts, each))))
+        const button = made("button", name, ...labels.map(each => made("span", "", phrase(this.texts, each))))
         button.type = "button"
-        button.title = said(this.texts, hint)
+        button.title = phrase(this.texts, hint)
         button.addEventListener("click", act)
         label(button, 0)
         return button
@@ -137,7 +137,7 @@ export class Transport {
 
     private rates(): HTMLSelectElement {
         const select = made("select", "", ...this.offers.map(rate => made("option", "", `×${written(this.texts, rate)}`)))
-        select.title = select.ariaLabel = said(this.texts, "run.rate")
+        select.title = select.ariaLabel = phrase(this.texts, "run.rate")
         select.addEventListener("change", () => this.engine.act({ do: "rate", rate: this.offers[select.selectedIndex]! }))
         return select
     }

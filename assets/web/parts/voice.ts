@@ -3,7 +3,7 @@
 
 import { made, tell } from "../core/dom"
 import { shown } from "../core/engine"
-import { said, withoutNumbers, type Texts } from "../core/words"
+import { phrase, withoutNumbers, type Texts } from "../core/words"
 import type { RemoteEngine } from "../channel/channel"
 import type { Command, StateMessage } from "../channel/messages"
 
@@ -46,23 +46,23 @@ export class Voice {
     private skipped = false
 
     constructor(private readonly engine: RemoteEngine, private readonly texts: Texts, private readonly isUpright: () => boolean, private readonly ended: AbortSignal) {
-        const { said: now, message, messages } = this.lab
+        const { said, message, messages } = this.lab
         this.element.id = "op-said"
         this.region.id = "op-voice"
         this.region.setAttribute("aria-live", "polite")
         this.text.setAttribute("role", "status")
         this.messages = messages
-        this.summaries = now.summaries
-        this.stopped = now.replays ? message : ""
+        this.summaries = said.summaries
+        this.stopped = said.replays ? message : ""
         this.acts = Object.fromEntries(Object.entries(ACTS).map(([name, command]) =>
             [name, this.button(name === "earlier" ? "op-act" : "op-quiet", "", () => engine.send(command))]))
         for (const [name, button] of Object.entries(this.acts)) button.dataset["name"] = name
         this.cross = this.button("op-cross", "\u00d7", () => (this.message.hidden = true))
-        this.cross.ariaLabel = said(texts, "help.close")
+        this.cross.ariaLabel = phrase(texts, "help.close")
         this.message = made("div", "op-over-scene", this.text, ...Object.values(this.acts), this.cross)
         this.message.id = "op-message"
         this.act = this.button("op-act", "", () => this.accept())
-        const skip = this.button("op-quiet", said(texts, "invite.skip"), () => this.skip())
+        const skip = this.button("op-quiet", phrase(texts, "invite.skip"), () => this.skip())
         this.invitation = made("div", "op-over-scene", this.invited, this.act, skip)
         this.invitation.id = "op-invitation"
         this.invited.ariaLive = "polite"
@@ -86,27 +86,27 @@ export class Voice {
     private get lab(): StateMessage { return this.engine.lab! }
 
     private show(): void {
-        const { message, level, messages, said: now } = this.lab
+        const { message, level, messages, said } = this.lab
         if (message !== this.told || messages !== this.messages) {
             this.told = message
             this.messages = messages
             this.notify(message, level)
         }
-        const labels: Record<string, string> = { earlier: now.earlier }
-        if (now.stopped) Object.assign(labels, { slowly: said(this.texts, "breakdown.slowly"), reset: said(this.texts, "breakdown.reset") })
-        if (level === "replay") labels["end"] = said(this.texts, "breakdown.end")
+        const labels: Record<string, string> = { earlier: said.earlier }
+        if (said.stopped) Object.assign(labels, { slowly: phrase(this.texts, "breakdown.slowly"), reset: phrase(this.texts, "breakdown.reset") })
+        if (level === "replay") labels["end"] = phrase(this.texts, "breakdown.end")
         for (const [name, button] of Object.entries(this.acts)) {
             tell(button, labels[name] ?? "")
             button.hidden = !labels[name]
         }
-        if (now.summaries !== this.summaries) { // requested, so announced at once and also shown
-            this.summaries = now.summaries
+        if (said.summaries !== this.summaries) { // requested, so announced at once and also shown
+            this.summaries = said.summaries
             clearTimeout(this.waiting)
             this.waiting = 0
-            this.announce(now.summary)
-            if (level !== "stop") this.notify(now.summary, "info")
+            this.announce(said.summary)
+            if (level !== "stop") this.notify(said.summary, "info")
         }
-        this.wanted = now.voice
+        this.wanted = said.voice
         if (this.wanted && !this.waiting) this.speak()
         this.replay()
         this.invite()
@@ -170,9 +170,9 @@ export class Voice {
         this.returns = this.invitation.contains(activeElement) || (this.returns && activeElement === document.body)
         this.invitation.hidden = this.skipped || invitation === ""
         if (this.invitation.hidden) return
-        tell(this.invited, said(this.texts, `invite.${invitation}`))
+        tell(this.invited, phrase(this.texts, `invite.${invitation}`))
         this.act.hidden = !this.lab.said.act
-        if (!this.act.hidden) tell(this.act, said(this.texts, `invite.${invitation}_button`))
+        if (!this.act.hidden) tell(this.act, phrase(this.texts, `invite.${invitation}_button`))
         if (this.returns) (this.act.hidden ? this.invited : this.act).focus()
     }
 

@@ -1,7 +1,7 @@
 // Captions of what each robot is doing, as in app/view/captions.py.
 
 import type { FigureData } from "../core/figure_data"
-import { said, significant, written } from "../core/words"
+import { phrase, significant, written } from "../core/words"
 import type { Side } from "./side"
 import type { Simulation } from "./simulation"
 
@@ -20,13 +20,13 @@ function kind(side: Side, off: boolean, data: FigureData): string {
 export function caption(side: Side, data: FigureData): string {
     const distance = side.held ? side.most : side.distance
     const which = kind(side, distance >= data.off, data)
-    return which && said(data, `caption.${which}`, { mm: written(data, 1e3 * distance, 0) })
+    return which && phrase(data, `caption.${which}`, { mm: written(data, 1e3 * distance, 0) })
 }
 
 /** One line with the captions of all robots that have one. */
 export function spoken(simulation: Simulation, captions: string[]): string {
     const { data } = simulation
-    const line = (text: string, i: number) => said(data, "caption.spoken", { robot: simulation.title(i), caption: text })
+    const line = (text: string, i: number) => phrase(data, "caption.spoken", { robot: simulation.title(i), caption: text })
     return captions.map((text, i) => text && line(text, i)).filter(Boolean).join(" ")
 }
 
@@ -36,25 +36,25 @@ export function notes(simulation: Simulation): string {
     const lines = sides.map((side, i) => {
         const reason = side.does().stops[side.stopped - 1]
         const time = written(data, side.ticks * data.dt, 1)
-        return reason ? said(data, "say.stopped", { robot: simulation.title(i), time, reason }) : ""
+        return reason ? phrase(data, "say.stopped", { robot: simulation.title(i), time, reason }) : ""
     })
     for (const { beyond } of sides) {
         if (!beyond) continue
         const { effort: { joint, unit, most }, gave } = beyond
         const [given, limit] = [gave, most].map(each => `${significant(data, each, 4)} ${unit}`)
-        lines.push(said(data, "efforts.exceeded", { joint, gave: given!, limit: limit! }))
+        lines.push(phrase(data, "efforts.exceeded", { joint, gave: given!, limit: limit! }))
     }
     if (followed.doubts.length) {
-        const reasons = followed.doubts.map(key => said(data, key)).join("; ")
-        lines.push(said(data, "say.ambiguous", { reasons }))
+        const reasons = followed.doubts.map(key => phrase(data, key)).join("; ")
+        lines.push(phrase(data, "say.ambiguous", { reasons }))
     }
     if (followed.fault) {
         const length = written(data, followed.fault.length ?? 0, 0)
-        const reasons = followed.fault.reasons.map(key => said(data, key, { length })).join("; ")
-        lines.push(said(data, "say.no_further", { reasons }))
+        const reasons = followed.fault.reasons.map(key => phrase(data, key, { length })).join("; ")
+        lines.push(phrase(data, "say.no_further", { reasons }))
     } else if (selected !== null) {
         const all = String(followed.data.points.length)
-        lines.push(said(data, "standalone.selected", { number: String(selected + 1), all }))
+        lines.push(phrase(data, "standalone.selected", { number: String(selected + 1), all }))
     }
     return lines.filter(Boolean).join(" ")
 }

@@ -71,7 +71,7 @@ export class LocalEngine implements Engine {
 
     act(act: Act): void {
         const { simulation } = this
-        if (act.do === "look") this.show(act.at)
+        if (act.do === "seek") this.show(act.at)
         else if (act.do === "goOn") this.goOn()
         else {
             this.show(null)

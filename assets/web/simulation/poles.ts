@@ -3,7 +3,7 @@
 // states, so that it is exact to rounding near w = 0, where the slow poles are.
 
 import type { FigureData, PoleNumbers } from "../core/figure_data"
-import { said, significant, WARNS, written } from "../core/words"
+import { phrase, significant, WARNS, written } from "../core/words"
 
 /** The motion across the path, or along it: what is said of it, and a line for each pole, as in app/view/poles.py. */
 export interface Channel {
@@ -43,13 +43,13 @@ export function channels(data: FigureData, gains: readonly number[]): Channel[] 
 
 function told(data: FigureData, name: "across" | "along", { poles, behaviour, seconds, damping }: Motion): Channel {
     const values = { damping: written(data, damping, 2), seconds: significant(data, seconds, 2) }
-    const kind = said(data, `behaviour.${behaviour}`, values), settles = SETTLING.has(behaviour)
-    const says = settles ? said(data, "behaviour.settles", { ...values, kind }) : kind
+    const kind = phrase(data, `behaviour.${behaviour}`, values), settles = SETTLING.has(behaviour)
+    const says = settles ? phrase(data, "behaviour.settles", { ...values, kind }) : kind
     const shown = poles.map(pole => [pole[0], dampingOf(pole) >= NO_OSCILLATION ? 0 : pole[1]] as const).reverse() // the slowest last, as in the lab
     const list = shown.filter(([, imaginary]) => imaginary >= 0)
         .map(([real, imaginary]) => significant(data, real, 3) + (imaginary ? ` ± ${significant(data, imaginary, 3)}i` : ""))
     return {
-        line: `${settles ? "" : WARNS}${said(data, `gains.${name}`)}: ${says}; ${said(data, "gains.poles", { poles: list.join(", ") })}`,
+        line: `${settles ? "" : WARNS}${phrase(data, `gains.${name}`)}: ${says}; ${phrase(data, "gains.poles", { poles: list.join(", ") })}`,
         points: shown.map(pole => `${name} ${pole.join(" ")}`),
     }
 }

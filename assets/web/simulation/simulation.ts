@@ -2,7 +2,7 @@
 
 import type { Change, Sample } from "../core/engine"
 import type { FigureData, Point, Setting } from "../core/figure_data"
-import { said } from "../core/words"
+import { phrase } from "../core/words"
 import type { Kernels } from "./kernels"
 import { Changes } from "./changes"
 import { Path } from "./path"
@@ -46,10 +46,10 @@ export class Simulation {
     title(side: number): string {
         const law = this.sides[side]!.does().title
         const alike = this.sides.filter(each => each.does().title === law).length > 1
-        return alike ? said(this.data, "side.title", { law, side: this.sideName(side) }) : law
+        return alike ? phrase(this.data, "side.title", { law, side: this.sideName(side) }) : law
     }
 
-    readonly sideName = (side: number): string => said(this.data, side ? "side.right" : "side.left")
+    readonly sideName = (side: number): string => phrase(this.data, side ? "side.right" : "side.left")
     /** The poles, if a law has them. */
     get poles(): Channel[] {
         const side = this.data.controls.includes("poles") && this.sides.find(each => each.does().linear)

@@ -56,7 +56,7 @@ class Process:
     def settle(self) -> None:
         """Some time passes, and the class is stored."""
         self.now += SETTLED + 1
-        self.keeper.look()
+        self.keeper.check()
 
 
 @pytest.fixture
@@ -72,11 +72,11 @@ def moved(two: list[Process]) -> list[Process]:
     one, other = two
     one.keeper.open()
     one.room.join(ADA, one.room.code, "Ada")
-    one.keeper.look()
+    one.keeper.check()
     one.leave()
     other.keeper.open()
     other.room.join(BOB, other.room.code, "Bob")
-    other.keeper.look()
+    other.keeper.check()
     return two
 
 
@@ -90,7 +90,7 @@ def test_every_process_with_the_key_has_the_same_class(two: list[Process], tmp_p
     assert one.room.code == other.room.code != stranger.room.code
     one.keeper.open()
     one.room.join(ADA, one.room.code, "Ada")
-    one.keeper.look()
+    one.keeper.check()
     stranger.keeper.open()
     assert names(stranger) == []
     stranger.records.close()
@@ -141,13 +141,13 @@ def test_who_has_lost_the_class_gives_it_up_and_takes_it_back_as_it_is_then(
     one, other = moved(two)
     one.room.freeze(True)  # its teacher does not know yet
     for _ in range(2):
-        one.keeper.look()
+        one.keeper.check()
     assert one.given_up == 1 and names(one) == [] and not one.room.orders.frozen
     assert other.given_up == 0 and names(other) == ["Ada", "Bob"]
     other.leave()
     one.keeper.open()
     assert names(one) == ["Ada", "Bob"] and not one.room.orders.frozen
-    other.keeper.look()
+    other.keeper.check()
     assert other.given_up == 1
 
 
@@ -167,9 +167,9 @@ def test_a_class_that_moved_away_while_its_process_was_suspended_is_read_again(
     other.leave()
     assert one.keeper.open()
     assert names(one) == ["Ada", "Bob"]
-    one.keeper.look()
+    one.keeper.check()
     assert one.given_up == 0 and names(one) == ["Ada", "Bob"]
-    other.keeper.look()
+    other.keeper.check()
     assert other.given_up == 1
 
 
@@ -178,12 +178,12 @@ def test_a_class_is_not_taken_from_a_process_that_has_it_open(tmp_path: Path) ->
     one, other = (Process(tmp_path / "labs.db", 0.0, wall=lambda: wall[0]) for _ in range(2))
     assert one.keeper.open()
     one.room.join(ADA, one.room.code, "Ada")
-    one.keeper.look()
+    one.keeper.check()
     for _ in range(20):
         wall[0] += RENEWAL
         one.records.renew([one.keeper.id])
         assert not other.keeper.open()
-    other.keeper.look()
+    other.keeper.check()
     assert names(one) == ["Ada"] and (one.given_up, other.given_up) == (0, 0)
     wall[0] += LEASE + RENEWAL  # the first one is suspended
     assert other.keeper.open() and names(other) == ["Ada"]
@@ -242,7 +242,7 @@ def test_a_push_that_labs_may_not_have_stored_yet_is_sent_again(two: list[Proces
     one.settle()
     one.room.push(TakeStep("01-a", 1))
     one.room.note(ADA, taken=2, given=one.now)
-    one.keeper.look()
+    one.keeper.check()
     one.leave()
     other.keeper.open()
     member = other.room.member(ADA)
@@ -262,11 +262,11 @@ def test_a_push_is_not_sent_again_because_the_class_moves_twice(two: list[Proces
         process.now += FRESH
         process.keeper.open()
         process.room.freeze(not process.room.orders.frozen)
-        process.keeper.look()
+        process.keeper.check()
         member = process.room.member(ADA)
         assert member is not None and member.taken == 1
         process.leave()
-    one.keeper.look()
+    one.keeper.check()
 
 
 def test_a_database_that_is_away_ends_no_class(
@@ -281,11 +281,11 @@ def test_a_database_that_is_away_ends_no_class(
             away.setattr(one.records, name, refuse)
         one.keeper.open()
         one.room.join(ADA, one.room.code, "Ada")
-        one.keeper.look()
+        one.keeper.check()
         one.now += FRESH
         one.keeper.open()
         assert names(one) == ["Ada"]
-    one.keeper.look()
+    one.keeper.check()
     one.leave()
     other.keeper.open()
     assert names(other) == ["Ada"]

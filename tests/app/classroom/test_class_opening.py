@@ -75,7 +75,7 @@ def test_another_process_has_the_class_as_it_was(home: Path) -> None:
     assert keeper.open()
     teacher = room.admit(shown(room.key), "desk")
     room.join("a" * 12, room.code, "Ada")
-    keeper.look()
+    keeper.check()
     records.give_up()
     records.close()
     (again,) = open_classes([])

@@ -63,12 +63,12 @@ class Watched:
         lab = Lab(loop_cache(), FIVE_BAR, self.course)
         self.labs[code] = lab, True
         self.room.join(code, self.room.code, name)
-        self.look()
+        self.check()
         return lab
 
-    def look(self) -> None:
+    def check(self) -> None:
         """As the class's thread does; then a frame of every lab."""
-        self.attendance.look()
+        self.attendance.check()
         for lab, _ in self.labs.values():
             lab.drain()
 
@@ -212,7 +212,7 @@ def test_a_frozen_lab_stands_still_and_refuses_with_a_sentence(klass: Watched) -
     outside = Lab(loop_cache(), FIVE_BAR, klass.course)
     do(lab, c.MoveHand(0.01, 0.0))
     klass.room.freeze(True)
-    klass.look()
+    klass.check()
     before = lab.simulation.time
     assert lab.message == ENGLISH("class.frozen") and not lab.simulation.forces.hands
     for command in (
@@ -233,7 +233,7 @@ def test_a_frozen_lab_stands_still_and_refuses_with_a_sentence(klass: Watched) -
         and not lab.simulation.forces.hands
     )
     klass.room.freeze(False)
-    klass.look()
+    klass.check()
     run(lab, 0.5)
     assert lab.simulation.time > before and lab.message == ""
 
@@ -243,10 +243,10 @@ def test_who_joins_is_frozen_too_and_who_leaves_is_let_go(klass: Watched) -> Non
     first, second = klass.student("Ada"), klass.student("Bob")
     assert first.frozen and second.frozen
     klass.room.leave("lab 0")
-    klass.look()
+    klass.check()
     assert not first.frozen and second.frozen
     assert klass.room.end() == 1
-    klass.look()
+    klass.check()
     assert not second.frozen and klass.room.members() == {} and not klass.room.orders.frozen
 
 
@@ -254,17 +254,17 @@ def test_a_step_is_opened_for_all_as_if_they_had_come_there(klass: Watched) -> N
     first, second = klass.student("Ada"), klass.student("Bob")
     do(second, c.OpenLesson(LESSON), c.Set("K1", 7.0))
     klass.room.push(TakeStep(LESSON, 1))
-    klass.look()
+    klass.check()
     for lab in (first, second):
         assert lab.lessons.lesson is not None and lab.lessons.index == 1
         assert lab.simulation.parameters.K1 == 300 and lab.locked  # of the scene before
         assert lab.lessons.answer() is None
         do(lab, c.CloseLesson())
-    klass.look()
+    klass.check()
     assert first.lessons.lesson is None  # once, not again and again
     for wrong in (TakeStep("nope", 0), TakeStep(LESSON, 99), TakeStep(LESSON, -1)):
         klass.room.push(wrong)
-        klass.look()
+        klass.check()
         assert first.lessons.lesson is None
         assert first.message.startswith(("unknown lesson", "there is no step"))
 
@@ -274,9 +274,9 @@ def test_a_setup_is_taken_by_all_even_when_frozen(klass: Watched) -> None:
     do(own, c.Set("K2", 33), c.ChoosePath("clover"))
     lab = klass.student("Ada")
     klass.room.freeze(True)
-    klass.look()
+    klass.check()
     klass.room.push(TakeSetup(capture(own.simulation)))
-    klass.look()
+    klass.check()
     assert capture(lab.simulation) == capture(own.simulation)
     assert lab.frozen and lab.message == ENGLISH("class.frozen")
 
@@ -296,7 +296,7 @@ def test_a_setup_leaves_a_student_in_the_open_step(klass: Watched, step: int) ->
     run(lab, 0.2)
     waits, before = lab.locked, lab.lessons.progress
     klass.room.push(TakeSetup(setup))
-    klass.look()
+    klass.check()
     assert capture(lab.simulation) == setup and lab.message == ENGLISH("class.setup_in_step")
     assert lab.lessons.progress == before and lab.lessons.index == step
     assert lab.locked == waits and lab.simulation.running == (not waits)
@@ -311,7 +311,7 @@ def test_set_up_again_brings_the_steps_own_setup_back(klass: Watched) -> None:
     do(lab, c.OpenLesson(LESSON))
     own = capture(lab.simulation)
     klass.room.push(TakeSetup(sent_setup(klass.course)))
-    klass.look()
+    klass.check()
     assert capture(lab.simulation) != own
     do(lab, c.BeginStepAnew())
     assert capture(lab.simulation) == own and lab.lessons.index == 0
@@ -323,7 +323,7 @@ def test_a_setup_ends_what_plays_and_nothing_is_noted_of_it(klass: Watched) -> N
     run(lab, 0.5)
     assert lab.lessons.playing
     klass.room.push(TakeSetup(sent_setup(klass.course)))
-    klass.look()
+    klass.check()
     run(lab, 2.5)
     assert not lab.lessons.playing and not lab.lessons.has_played()
     assert lab.lessons.notes.truths == {}
@@ -333,7 +333,7 @@ def test_a_step_that_is_opened_is_a_step_of_a_lesson(klass: Watched) -> None:
     lab, free = klass.student("Ada"), klass.student("Bob")
     do(lab, c.Set("K1", 7.0), c.OpenLesson(OTHER), *[c.GoToStep(1)] * 6)
     klass.room.push(TakeStep(LESSON, 5))
-    klass.look()
+    klass.check()
     assert lab.message == ENGLISH("class.step_elsewhere")
     assert free.message == ENGLISH("class.step")
     for by, index in ((0, 5), (1, 6), (1, 7), (-1, 6), (-1, 5), (-1, 4)):
@@ -353,7 +353,7 @@ def test_who_joins_later_gets_what_was_sent_last(klass: Watched) -> None:
         late = klass.student(name)
         assert late.lessons.progress.lesson == LESSON and late.lessons.index == 1
         do(late, c.CloseLesson())
-        klass.look()
+        klass.check()
         assert late.lessons.lesson is None  # once
     klass.room.push(TakeSetup(sent_setup(klass.course)))
     assert capture(klass.student("Cid").simulation) == sent_setup(klass.course)
@@ -362,33 +362,33 @@ def test_who_joins_later_gets_what_was_sent_last(klass: Watched) -> None:
 def test_what_stands_ends_when_the_teacher_says_so(klass: Watched) -> None:
     first = klass.student("Ada")
     klass.room.push(TakeStep(LESSON, 1))
-    klass.look()
+    klass.check()
     klass.room.push(None)
-    klass.look()
+    klass.check()
     assert klass.room.orders.push is None and first.lessons.progress.lesson == LESSON
     assert klass.student("Bob").lessons.lesson is None
     klass.room.push(TakeStep(OTHER, 0))
-    klass.look()
+    klass.check()
     assert first.lessons.progress.lesson == OTHER
     klass.room.end()
-    klass.look()
+    klass.check()
     assert klass.student("Cid").lessons.lesson is None
 
 
 def test_who_reloads_has_what_was_sent_and_goes_on_from_there(klass: Watched) -> None:
     lab = klass.student("Ada")
     klass.labs["lab 0"] = lab, False  # a reload, and just then the teacher sends
-    klass.look()
+    klass.check()
     klass.room.push(TakeStep(LESSON, 1))
-    klass.look()
+    klass.check()
     klass.labs["lab 0"] = lab, True
-    klass.look()
+    klass.check()
     assert lab.lessons.index == 1
     do(lab, c.GoToStep(1))
     klass.labs["lab 0"] = lab, False
-    klass.look()
+    klass.check()
     klass.labs["lab 0"] = lab, True
-    klass.look()
+    klass.check()
     assert lab.lessons.index == 2  # and is not sent back
 
 
@@ -402,19 +402,19 @@ def test_only_a_teacher_thaws(klass: Watched) -> None:
 def test_who_leaves_and_returns_keeps_its_place(klass: Watched) -> None:
     lab = klass.student("Ada")
     klass.room.push(TakeStep(LESSON, 1))
-    klass.look()
-    klass.look()
+    klass.check()
+    klass.check()
     klass.labs["lab 0"] = lab, False
-    klass.look()
+    klass.check()
     away = klass.room.member("lab 0")
     assert away is not None and not away.connected and away.progress.lesson == LESSON
     del klass.labs["lab 0"]  # dropped after a while; kept in the database
     klass.room.freeze(True)
-    klass.look()
+    klass.check()
     again = Lab(loop_cache(), FIVE_BAR, klass.course)
     again.lessons.resume(lab.lessons.progress, None, again)
     klass.labs["lab 0"] = again, True
-    klass.look()
+    klass.check()
     member = klass.room.member("lab 0")
     assert member is not None and member.connected and again.frozen
     assert (member.number, member.name) == (1, "Ada") and again.lessons.index == 1
@@ -426,7 +426,7 @@ def test_the_table_knows_who_is_idle_and_who_is_away(klass: Watched) -> None:
     klass.now += 180.0
     do(busy, c.SetRunning(False))
     klass.labs["lab 2"] = klass.labs["lab 2"][0], False
-    klass.look()
+    klass.check()
     rows = page.table(klass.room.members().values(), klass.course, klass.now, ENGLISH)
     for name, state in (("Busy", "here"), ("Idle", "idle for 3 min"), ("Gone", "away")):
         row = next(row for row in rows.split("<tr") if name in row)
@@ -486,7 +486,7 @@ def test_the_record_has_a_row_for_each_prediction_and_task(klass: Watched) -> No
     klass.student("Bob")
     do(lab, c.OpenLesson(LESSON), c.GoToStep(1))
     do(lab, c.Predict(times=(0.0, 1.0), values=(1.0, 2.5)))
-    klass.look()
+    klass.check()
     sheets = record(klass.room.members().values(), klass.course)
     rows = sheets["Answers"]
     assert {row["nickname"] for row in rows} == {"Ada"}  # Bob is in the free lab
@@ -516,7 +516,7 @@ def test_the_record_has_a_row_for_each_prediction_and_task(klass: Watched) -> No
 def test_a_nickname_like_a_formula_is_text(klass: Watched, name: str) -> None:
     lab = klass.student(name)
     do(lab, c.OpenLesson(LESSON))
-    klass.look()
+    klass.check()
     rows = record(klass.room.members().values(), klass.course)["Answers"]
     assert rows and {row["nickname"] for row in rows} == {cleaned(name)}
 

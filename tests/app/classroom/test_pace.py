@@ -46,9 +46,9 @@ class Room:
         self.room.join(code, self.room.code, code)
         return self.labs[code][0]
 
-    def look(self) -> None:
+    def check(self) -> None:
         """Send orders, and let the labs apply them."""
-        self._sync.look()
+        self._sync.check()
         for lab, _ in self.labs.values():
             lab.drain()
 
@@ -64,9 +64,9 @@ def test_all_are_brought_within_the_steps_and_those_within_stay(course: Course) 
     do(elsewhere, TakeStep(OTHER, 2))
     do(within, TakeStep(LESSON, 2))
     klass.room.keep_within(Pace(LESSON, FIRST, LAST))
-    klass.look()
+    klass.check()
     later = klass.student()
-    klass.look()
+    klass.check()
     places = [place(lab) for lab in (free, elsewhere, within, later)]
     assert places == [(LESSON, FIRST), (LESSON, FIRST), (LESSON, 2), (LESSON, FIRST)]
 
@@ -117,10 +117,10 @@ def test_a_step_sent_outside_ends_it_one_within_does_not(course: Course) -> None
     lab, pace = klass.student(), Pace(LESSON, FIRST, LAST)
     klass.room.keep_within(pace)
     klass.room.push(TakeStep(LESSON, LAST))
-    klass.look()
+    klass.check()
     assert place(lab) == (LESSON, LAST) and klass.room.orders.pace == pace
     klass.room.push(TakeStep(OTHER, 0))
-    klass.look()
+    klass.check()
     assert place(lab) == (OTHER, 0) and lab.lessons.pace is None
 
 
@@ -128,10 +128,10 @@ def test_who_leaves_the_class_or_outlives_it_may_go_anywhere(course: Course) -> 
     klass = Room(course)
     gone, stays = klass.student(), klass.student()
     klass.room.keep_within(Pace(LESSON, FIRST, LAST))
-    klass.look()
+    klass.check()
     klass.room.leave("lab 0")
-    klass.look()
+    klass.check()
     assert gone.lessons.pace is None and stays.lessons.pace is not None
     klass.room.end()
-    klass.look()
+    klass.check()
     assert stays.lessons.pace is None and klass.room.orders.pace is None

@@ -71,7 +71,7 @@ def test_the_gains_of_a_lab_reach_the_class(course: Course) -> None:
     room.join("lab", room.code, "Ada")
     sync = ClassSync(room, {"lab": (lab, True)}.get)
     do(lab, c.Set("K1", 123.0), c.Set("K5", 7.0))
-    sync.look()
+    sync.check()
     member = room.member("lab")
     assert member is not None
     told = dict(zip(GAINS, member.gains, strict=True))
@@ -121,7 +121,7 @@ def test_picked_sketches_keep_their_numbers_while_others_come_in(course: Course)
     seen: list[list[str]] = []
     for number in (2, 0, 1):  # not in the order of joining
         do(labs[f"lab {number}"][0], c.Predict(times=(0.0, 1.0), values=(1.0 + number, 2.0)))
-        sync.look()
+        sync.check()
         teaching.chosen.picked = ()
         everything = answers.view(False)
         assert "Nick" not in everything

@@ -36,7 +36,7 @@ def serve(again):
     while True:
         time.sleep(0.05)
 
-supervisor.SOON, supervisor.LOOK = float(sys.argv[3]), 0.05
+supervisor.SOON, supervisor.CHECK = float(sys.argv[3]), 0.05
 sys.exit(supervisor.supervised(serve))
 """
 

@@ -66,7 +66,7 @@ def silence(machine: Machine, share: float, seconds: float) -> float:
         machine.run(owed >= 1)
         owed -= owed >= 1
         if number % EVERY == 0:
-            clock.look()
+            clock.check()
             counted += clock.counted(SILENT, EVERY * SLICE)
         if machine.has_signed or number * SLICE > seconds:
             return counted
@@ -109,7 +109,7 @@ def test_the_system_tells_what_threads_of_this_process_do() -> None:
     spent = 0.0
     while spent < 0.1:
         threading.Event().wait(0.05)
-        clock.look()
+        clock.check()
         spent += clock.counted(ids["spins"], 0.0)  # as a thread that waits, it would count nothing
         assert 0 <= clock.counted(ids["waits"], 0.05) <= 0.05
     over.set()
@@ -120,5 +120,5 @@ def test_the_system_tells_what_threads_of_this_process_do() -> None:
 def test_where_the_system_does_not_tell_the_processor_time_counts() -> None:
     clock = ProcessorTime(dict)
     sum(range(300_000))
-    clock.look()
+    clock.check()
     assert 0 < clock.counted(1, 0.0) < 60

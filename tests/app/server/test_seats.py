@@ -173,7 +173,7 @@ class World:
     # What must be true then
 
     def check(self) -> None:
-        self.service._attendance.look()
+        self.service._attendance.check()
         names = set[str]()
         for page in self.pages:
             page.lab.drain()

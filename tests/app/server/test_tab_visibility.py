@@ -56,7 +56,7 @@ class Page:
                 self.scheduled.show(0, 1)
             if draws and tick % round(EACH / TICK) == 0:
                 self.sight.hear()
-            self.sight.look()
+            self.sight.check()
 
 
 def test_a_page_that_stalls_for_a_while_is_not_taken_for_gone() -> None:

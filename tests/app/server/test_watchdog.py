@@ -16,7 +16,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from onpath.app.server.watchdog import EXIT_CODE, LOOKS, Sign, Watchdog
+from onpath.app.server.watchdog import CHECKS, EXIT_CODE, Sign, Watchdog
 from onpath.app.storage.records import Records
 from tests.support import waiting
 from tests.support.lab_process import LabProcess, free_ports
@@ -56,12 +56,12 @@ sys.exit(run_command(["serve", *sys.argv[1:]]))
 """
 
 
-class Look:
-    """A watchdog of two signs of life, which looks when it is told; each look counts one second."""
+class Stepped:
+    """A watchdog of two signs of life, which checks when it is told; each check counts 1 s."""
 
     def __init__(self) -> None:
         self.values, self.ended = {"a": 0, "b": 0}, 0
-        self.dog = Watchdog(float(LOOKS), self._end, self)
+        self.dog = Watchdog(float(CHECKS), self._end, self)
         threads = {"a": 1, "b": 2}
         self.counts = dict.fromkeys(threads.values(), 1.0)
         self.dog._signs = {
@@ -69,13 +69,13 @@ class Look:
             for name in threads
         }
 
-    def __enter__(self) -> Look:
+    def __enter__(self) -> Stepped:
         return self
 
     def __exit__(self, *_: object) -> None:
         self.dog.stop()  # it limits the processor time of this process
 
-    def look(self) -> None:
+    def check(self) -> None:
         pass
 
     def counted(self, thread: int, most: float) -> float:
@@ -88,31 +88,33 @@ class Look:
 @given(
     st.lists(
         st.tuples(
-            st.sets(st.sampled_from("ab")), st.integers(1, 2 * LOOKS), st.sampled_from([1.0, 0.125])
+            st.sets(st.sampled_from("ab")),
+            st.integers(1, 2 * CHECKS),
+            st.sampled_from([1.0, 0.125]),
         ),
         max_size=6,
     )
 )
-@example([(set(), LOOKS - 1, 1.0), ({"a", "b"}, 1, 1.0), ({"a"}, LOOKS - 1, 1.0)])
-@example([({"b"}, LOOKS, 1.0), ({"a", "b"}, 1, 1.0), ({"a"}, 2 * LOOKS, 1.0)])
-@example([(set(), 2 * LOOKS, 0.125), (set(), 2 * LOOKS, 1.0)])
+@example([(set(), CHECKS - 1, 1.0), ({"a", "b"}, 1, 1.0), ({"a"}, CHECKS - 1, 1.0)])
+@example([({"b"}, CHECKS, 1.0), ({"a", "b"}, 1, 1.0), ({"a"}, 2 * CHECKS, 1.0)])
+@example([(set(), 2 * CHECKS, 0.125), (set(), 2 * CHECKS, 1.0)])
 def test_anything_without_a_sign_of_life_for_long_enough_hangs(
     lives: list[tuple[set[str], int, float]],
 ) -> None:
     silent = {"a": 0.0, "b": 0.0}
-    with Look() as look:
-        look.dog.look()
+    with Stepped() as tried:
+        tried.dog.check()
         for alive, counts in [(alive, counts) for alive, n, counts in lives for _ in range(n)]:
-            look.counts = dict.fromkeys(look.counts, counts)
+            tried.counts = dict.fromkeys(tried.counts, counts)
             for name in silent:
                 silent[name] = 0.0 if name in alive else silent[name] + counts
-                look.values[name] += name in alive
-            ended = look.ended
-            look.dog.look()
-            hangs = {name for name in silent if silent[name] >= LOOKS}
-            assert bool(hangs) == bool(look.dog.trouble)
-            assert not hangs or look.dog.trouble in {f"{name} hangs" for name in hangs}
-            assert (look.ended > ended) == (max(silent.values()) >= 2 * LOOKS)
+                tried.values[name] += name in alive
+            ended = tried.ended
+            tried.dog.check()
+            hangs = {name for name in silent if silent[name] >= CHECKS}
+            assert bool(hangs) == bool(tried.dog.trouble)
+            assert not hangs or tried.dog.trouble in {f"{name} hangs" for name in hangs}
+            assert (tried.ended > ended) == (max(silent.values()) >= 2 * CHECKS)
 
 
 @linux_only
@@ -124,14 +126,14 @@ def test_systemd_hears_from_a_process_at_every_look(
     with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as systemd:
         systemd.bind(address.replace("@", "\0", 1))
         systemd.settimeout(WAIT)
-        with Look() as look:
-            look.dog.look()  # nobody asks
+        with Stepped() as tried:
+            tried.dog.check()  # nobody asks
             monkeypatch.setenv("NOTIFY_SOCKET", address)
             for _ in range(2):
-                look.dog.look()
+                tried.dog.check()
                 assert systemd.recv(100) == b"WATCHDOG=1"
-    with Look() as look:
-        look.dog.look()  # it has gone
+    with Stepped() as tried:
+        tried.dog.check()  # it has gone
 
 
 class Served(LabProcess):

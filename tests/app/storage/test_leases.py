@@ -60,7 +60,7 @@ class Owner:
     def renew(self) -> bool:
         """Renew, and say whether the class is still here."""
         self._records.owner = self.name
-        self.keeper.look()
+        self.keeper.check()
         return self.is_open
 
     def give_up(self) -> None:
@@ -217,7 +217,7 @@ def test_a_lease_ends_when_its_owner_is_gone(two: list[Records]) -> None:
 
     def seen() -> bool:
         one.renew([CLASS])
-        keeper.look()
+        keeper.check()
         return keeper.is_elsewhere(CLASS)
 
     wait_for(seen, 60.0)
@@ -239,7 +239,7 @@ def test_a_database_that_is_away_moves_nothing(
     with monkeypatch.context() as away:
         for name in ("renew", "give_up"):
             away.setattr(one, name, refuse)
-        keeper.look()
+        keeper.check()
         keeper.stop()
-    keeper.look()
+    keeper.check()
     assert not lost

@@ -79,11 +79,13 @@ class Desk:
 
     @property
     def fields(self) -> dict[str, FormField]:
-        return {field.name: field for group in self.form.look()[0].groups for field in group.fields}
+        return {
+            field.name: field for group in self.form.shown()[0].groups for field in group.fields
+        }
 
     @property
     def values(self) -> dict[str, FieldValue]:
-        return {name.removeprefix(PREFIX): value for name, value in self.form.look()[1].items()}
+        return {name.removeprefix(PREFIX): value for name, value in self.form.shown()[1].items()}
 
 
 @pytest.fixture
@@ -239,7 +241,7 @@ def test_a_nickname_with_markup_is_only_text_and_on_a_projection_in_one_group(
     desk = Desk(language)
     desk.set("follow", 1.0)
     desk.presents = True
-    form, values = desk.form.look()
+    form, values = desk.form.shown()
     for group in form.groups:
         for field in group.fields:
             shown = str(values.get(field.name, ""))
@@ -270,7 +272,7 @@ def test_whatever_a_teacher_orders_the_page_can_be_shown(ways: list[Any]) -> Non
             desk.orders.lead(way)
         else:
             desk.orders.set(PREFIX + way[0], way[1])
-        form, told = desk.form.look()
+        form, told = desk.form.shown()
         for group in form.groups:
             for field in group.fields:
                 options = [option.value for option in field.options]

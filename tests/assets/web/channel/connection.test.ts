@@ -43,7 +43,7 @@ function opened(): { look: (ms: number, jump?: number) => void; worker: FakeWork
         for (let passed = 0; passed < ms; passed += LOOKS) {
             date += LOOKS
             pass(LOOKS)
-            connection.look(true)
+            connection.check(true)
         }
     }
     return { look, worker: FakeWorker.now, engine }

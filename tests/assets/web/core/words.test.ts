@@ -1,13 +1,13 @@
 import assert from "node:assert/strict"
 import { test } from "node:test"
-import { filled, localized, said, significant, withoutNumbers, written } from "../../../../assets/web/core/words"
+import { filled, localized, phrase, significant, withoutNumbers, written } from "../../../../assets/web/core/words"
 
 const GERMAN = { words: { point: ",", told: "{name} ist {mm} mm entfernt, {name}" } }
 
 test("values stand where a text names them, and only there", () => {
-    assert.equal(said(GERMAN, "told", { name: "<b>", mm: "{name}" }), "<b> ist {name} mm entfernt, <b>")
+    assert.equal(phrase(GERMAN, "told", { name: "<b>", mm: "{name}" }), "<b> ist {name} mm entfernt, <b>")
     assert.equal(filled("{a} {b}", { a: "1" }), "1 {b}")
-    assert.throws(() => said(GERMAN, "missing"), /no words for missing/)
+    assert.throws(() => phrase(GERMAN, "missing"), /no words for missing/)
 })
 
 test("numbers are written as the language does", () => {

@@ -84,7 +84,7 @@ test("in the past, one goes on or back; where one cannot go on, only back", () =
     show({ branches: false })
     assert.ok(goes.hidden)
     found(transport.element, "button", "transport.back").click()
-    assert.deepEqual(acts, ["look"])
+    assert.deepEqual(acts, ["seek"])
 })
 
 test("while the robots take no commands, every button says why, and then what it does", () => {
