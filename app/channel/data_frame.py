@@ -32,11 +32,11 @@ from onpath.models.systems.law_parameters import LEVEL_SET
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
 
-MOST = 30  # samples that are kept while a page reads slowly; then they are read from the history
+MOST = 30  # samples kept for a page that reads slowly; older ones come from the history
 EARLIER = 4000  # samples of the last minute, at most
 TIME, LENGTH, ANGLE, FORCE = 1e4, 1e5, 1e4, 1e2  # units per second, metre, radian, newton
-FIELDS = "theta", "theta_ref", "y", "force"  # of a robot, after its distance
-PULLED = len(SIDES)  # number of the first bit of the pulled sides
+FIELDS = "theta", "theta_ref", "y", "force"  # of each robot in a row, after its distance
+PULLED = len(SIDES)  # bit number of the first pulled side
 
 
 class Sample(Struct, frozen=True, eq=False):

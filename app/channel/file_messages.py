@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from msgspec import Meta, Struct
 
-LONGEST_NAME = 200  # of a file, [characters]
+LONGEST_NAME = 200  # [characters] of a file's name
 
 # From the page
 

@@ -13,7 +13,7 @@ from onpath.app.common.throttle import Throttle
 from onpath.app.common.visible_text import comparison_key, readable, shortened
 from onpath.models.errors import CodedError
 
-LONGEST_NAME = 24  # [visible characters]
+LONGEST_NAME = 24  # [visible characters] of a student's name
 CODE_LENGTH = 6
 """Of a class code: short enough for a projector, long enough not to be guessed; see `Admission`."""
 

@@ -32,7 +32,7 @@ from onpath.lessons.schema import (
 
 Row = Mapping[str, str | int | float]
 QUESTIONS = Quiz, NumberQuestion, OpenQuestion
-WIDTH = 14  # [characters], of a column
+WIDTH = 14  # [characters], width of a column
 _STUDENT = ("number", "nickname")
 _WHERE = ("lesson", "title", "step", "kind")
 ANSWERS = (

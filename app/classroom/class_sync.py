@@ -13,7 +13,7 @@ from onpath.app.common.periodic import Periodic
 from onpath.app.lab.commands import Freeze, KeepWithin
 from onpath.app.lab.lab import Lab
 
-SYNC_INTERVAL = 0.25  # [s]
+SYNC_INTERVAL = 0.25  # [s] between rounds through the labs of a class
 GAINS = ("K1", "K2", "K3", "K4", "K5")
 Find = Callable[[str], tuple[Lab, bool] | None]
 """The lab of a code and whether a browser is connected; None if it is not here."""

@@ -19,7 +19,7 @@ PAIRS = (("K1", "K2"), ("K4", "K5"), ("K1", "K3"), ("K1", "K5"))
 """Gains along the two axes; each spring with its damping comes first."""
 SPRINGS = (("K1", "K2"), ("K4", "K5"))
 """Pairs of a spring and its damping, with a border between swinging and creeping."""
-POINTS = 60  # on the border
+POINTS = 60  # number of points on the border of the stable region
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from onpath.models.paths.path_design import PathDesign
     from onpath.models.systems.robots import RobotEntry
 
-SHORTEST_HANG = 1.0  # [s]
+SHORTEST_HANG = 1.0  # [s], least value of --hang
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from contextlib import suppress
 
 from onpath.app.common.end_signals import END_SIGNALS
 
-SOON = 5.0  # [s]; a lab that ends this soon after its start would only fail again
+SOON = 5.0  # [s] after its start; a lab that ends sooner would only fail again
 CHECK = 0.5  # [s] between a child's checks whether its parent lives
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from threading import Timer
 
-PATIENCE = 1.0  # [s]
+PATIENCE = 1.0  # [s]; work that takes longer is announced
 
 
 @contextmanager

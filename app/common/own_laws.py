@@ -16,7 +16,7 @@ from onpath.models.control.laws.python_law import IN_FILE, Now, law_in, python_l
 from onpath.models.control.laws.registry import add_law, law_name, law_named
 from onpath.models.errors import CodedError
 
-LATE = 0.2  # [s] of processor time by which calls may exceed their intervals in all
+LATE = 0.2  # [s] of processor time by which all calls together may exceed their intervals
 
 
 def law_given(law: Any) -> str:
@@ -57,7 +57,7 @@ def compiled_law(law: Any) -> str:
     return name
 
 
-_FILES = dict[str, str]()  # by name
+_FILES = dict[str, str]()  # contents of the laws' files, by name
 
 
 def laws_of_files() -> dict[str, str]:

@@ -49,7 +49,7 @@ class ReadFile:
     remarks: tuple[Message, ...]
 
 
-_FILES = dict[str, GivenFile]()  # by name of the robot
+_FILES = dict[str, GivenFile]()  # the robots' files, by the robot's name
 
 
 def robot_of_file(file: Path, options: Options) -> tuple[RobotEntry, tuple[Message, ...]]:

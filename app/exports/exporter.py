@@ -17,7 +17,7 @@ from onpath.app.lab.lab import Lab
 from onpath.lessons.words import Words
 from onpath.models.studies.comparison import Outcome
 
-PATIENCE = 120.0  # [s], of a file, including the files queued before it
+PATIENCE = 120.0  # [s] that a file may take, including the files queued before it
 process = ExportProcess()
 _queue = ThreadPoolExecutor(1, "exports")
 """Passes one file at a time to the process, on behalf of all tabs."""

@@ -20,7 +20,7 @@ from onpath.models.systems.guesses import Guess
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
 
-FILM = 10.0  # [s]
+FILM = 10.0  # [s] of the lab that a film shows
 
 
 def csv_file(robot: str, parameters: Parameters, history: HistoryCopy) -> bytes:

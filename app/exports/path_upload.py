@@ -30,8 +30,8 @@ from onpath.models.paths.nearest_path import nearest_path
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import Parameters
 
-STARTING = 60.0  # [s] for the process to start
-SECONDS = 15.0  # [s] for one file
+STARTING = 60.0  # [s] that the process may take to start
+SECONDS = 15.0  # [s] that one file may take
 process = ExportProcess()
 _queue = ThreadPoolExecutor(1, "path files")
 """Passes the files of all tabs to the process, one at a time."""

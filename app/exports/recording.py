@@ -20,7 +20,7 @@ from onpath.app.viser_adapter.film_server import FilmServer
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.systems.robots import Robot
 
-RATE = 30.0  # [Hz]
+RATE = 30.0  # [Hz], frames of a recording
 
 
 def record_scene(

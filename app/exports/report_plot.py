@@ -21,7 +21,7 @@ from onpath.lessons.schema import Sketch
 from onpath.lessons.sides import ROLES
 from onpath.lessons.words import Words
 
-SIZE = (6.6, 2.9)  # [in]
+SIZE = (6.6, 2.9)  # [in], width and height of a plot
 ONE_AT_A_TIME = Lock()  # rc_context changes global state shared by all threads
 
 

@@ -33,8 +33,8 @@ from onpath.models.errors import Message
 from onpath.models.systems.catalogue import FIVE_BAR, RobotEntry
 from onpath.models.systems.law_parameters import DISTANCE, LEVEL_SET
 
-MOST_COMMANDS = 500  # maximum in the queue; further ones are dropped
-PATIENCE = 15  # frames that a lab waits before it says so
+MOST_COMMANDS = 500  # commands in the queue; further ones are dropped
+PATIENCE = 15  # frames of waiting after which a lab says that it waits
 
 
 class Command:

@@ -16,7 +16,7 @@ from onpath.models.paths.space_curves import saddle
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.robots import Robot
 
-BLEND = 0.3  # [s]
+BLEND = 0.3  # [s] that the change to another path takes
 DEPTH = 100
 HALVINGS = 6  # of a drag that leads to an invalid path: it ends within 1/64 of its length
 

@@ -37,7 +37,7 @@ from onpath.models.systems.catalogue import FIVE_BAR, RobotEntry
 from onpath.models.systems.parameters import TICK, Parameters, rise_of, time_step
 from onpath.models.systems.robots import Robot
 
-MOST_TICKS = 200  # per frame
+MOST_TICKS = 200  # largest number of ticks per frame
 
 
 class Simulation:

@@ -31,9 +31,9 @@ if TYPE_CHECKING:
 NESTED = {"start": 1, "velocity": 1, "hold": 1, "push": 1, "wall": 1, "profile": 2}
 """Arguments that are sequences, and how deep: those that are deeper are several."""
 SEVERAL = list, tuple, range, np.ndarray
-SMALL = 20.0  # [s], simulated, that take less time than processes take to start
+SMALL = 20.0  # [s] of simulated time below which processes are not worth their start
 SHOWN = 40  # rows of a table in a cell
-MOST_LINES = 12  # of a picture that are named
+MOST_LINES = 12  # lines of a picture up to which they are named
 LOST = "the process that simulated it has died"
 
 Trial = tuple[Experiment, str]

@@ -11,7 +11,7 @@ from contextlib import contextmanager, suppress
 from onpath.app.common.error_log import log_error
 from onpath.app.common.on_time import wait_until_on_time
 
-REST = 2.0  # rest of a build, relative to its duration; sending the scene takes time as well
+REST = 2.0  # pause after a build, in durations of it; sending the scene takes time as well
 LONG = 0.5  # [s]; longer builds rest no longer than one of this duration
 CALM = 1.0  # [s] without a build, after which the next one need not rest between its parts
 PATIENCE = 0.1  # [s] that a part of a build waits at most while frames are late

@@ -84,7 +84,7 @@ def rectangle(low: tuple[float, float], high: tuple[float, float]) -> np.ndarray
     return np.array([(x0, z0), (x1, z0), (x1, z1), (x0, z1)])
 
 
-USUAL_LINK = 0.2  # [m]
+USUAL_LINK = 0.2  # [m], length of a link for which the parts have their usual size
 
 
 def link() -> Trimesh:

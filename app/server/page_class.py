@@ -20,7 +20,7 @@ from onpath.app.server.told_values import ToldValues
 from onpath.lessons.course import Course
 from onpath.lessons.words import Words
 
-REFRESH_INTERVAL = 1.0  # [s]
+REFRESH_INTERVAL = 1.0  # [s] between updates of a class's view
 
 
 class PageClass:

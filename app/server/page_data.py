@@ -55,9 +55,9 @@ from onpath.app.view.symbol_geometry import has_meaning, symbol_lines
 from onpath.app.viser_adapter.data_channel import Message, PageStream
 from onpath.models.systems.robots import Robot
 
-EVERY = 3.0  # frames of simulation per frame of data: 20 Hz
-MOST_REQUESTS = 16  # of a page that wait to be served, and answers that wait to be sent
-BEAT = 1.0  # [s]; a page to which nothing else is told for so long is told that the lab lives
+EVERY = 3.0  # frames of simulation per data frame: 20 Hz
+MOST_REQUESTS = 16  # requests of a page that may wait, and answers to it that may be unsent
+BEAT = 1.0  # [s] without news, after which a page is told that its lab is alive
 
 
 class PageData:

@@ -29,7 +29,7 @@ from onpath.lessons.words import Words
 from onpath.models.errors import CodedError, Message
 from onpath.models.path_files.placing import RADIUS, ROUND, SMOOTH, Placing
 
-PART = 65_536  # [B], of a file for the page; one with each frame of data
+PART = 65_536  # [B] of a file that are sent to the page with each data frame
 
 FileRequest = SendFile | SendPart | DropFile | MakeFile
 """What a page says of files."""

@@ -52,7 +52,7 @@ from onpath.models.systems.parameters import Parameters
 _DRAWN = {switch_name(name): name for name in SWITCHES}
 TURNED = 0.05
 """To which joint angles are rounded for the critical α, which varies slowly, [rad]."""
-MOST_LIMITS = 512  # critical values of α that are kept: those of a lap along a path, many times
+MOST_LIMITS = 512  # critical values of α in the cache; a lap along a path needs many
 _COORDINATES = {"point_z1": "first", "point_z2": "second"}
 
 

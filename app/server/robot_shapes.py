@@ -11,7 +11,7 @@ from onpath.models.errors import Message
 from onpath.models.systems.rigid_chain import Chain
 
 log = logging.getLogger(__name__)
-LONGEST = 60.0  # [s]
+LONGEST = 60.0  # [s] that reading the shapes of a robot may take
 
 
 def prepare_shapes(chain: Chain) -> None:

@@ -28,7 +28,7 @@ from onpath.models.control.settable import with_values
 from onpath.models.errors import CodedError, Message
 from onpath.models.systems.catalogue import robot_named
 
-LONGEST = 60.0  # [s] in which a file is read
+LONGEST = 60.0  # [s] that reading a file may take
 Post = Callable[[Command], None]
 
 

@@ -23,7 +23,7 @@ from onpath.app.viser_adapter.data_channel import DataChannel, PageStream
 from onpath.app.viser_adapter.scene_release import release_scene
 from onpath.app.viser_adapter.secure_connection import SecureConnection
 
-DIGITS = 10  # of the number of requests, at most
+DIGITS = 10  # most digits of a request's number
 _hello = msgspec.json.Decoder(Hello)
 
 

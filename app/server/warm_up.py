@@ -35,7 +35,7 @@ LATER = (
     "scipy.linalg",
     "scipy.signal",
 )
-REST = 3.0  # [s] in which the first browser can open its lab
+REST = 3.0  # [s] left to the first browser to open its lab
 TRIES = 5
 
 

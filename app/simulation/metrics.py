@@ -12,8 +12,8 @@ import msgspec
 
 from onpath.app.simulation.simulation_thread import SimulationThread
 
-WINDOW, LONGEST = 10.0, 60.0  # length of the measured interval: default, maximum
-OVERDUE = 0.05  # [s] late
+WINDOW, LONGEST = 10.0, 60.0  # [s], length of the measured interval: default and maximum
+OVERDUE = 0.05  # [s] of lateness from which a frame counts as overdue
 QUANTILES = (0.5, 0.95, 0.99)
 MEMORY = Path("/proc/self/statm")  # Linux only
 

@@ -17,7 +17,7 @@ from onpath.app.simulation.slow_updates import Updated
 
 FORGETTING = 1 / 600  # low-pass gain of the processor time of a lab's commands, per frame
 FORGIVING = 1 / 120  # share per frame by which a lab's longest commands count less
-SHORT = 2e-3  # [s] of processor time, of short commands
+SHORT = 2e-3  # [s] of processor time up to which a command counts as short
 FADING = 1 / 60  # low-pass gain of a lab's measured speed, per frame
 LONGEST = 4  # maximum number of frames that are simulated together
 NEVER = -1_000_000  # number of a frame in the distant past

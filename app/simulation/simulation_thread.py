@@ -30,7 +30,7 @@ log = logging.getLogger(__name__)
 
 FADING = 1 / 60  # low-pass gain of computing times, per frame
 BEHIND = 2 * FRAME  # [s] of lateness from which two frames are simulated as one
-LATEST = 0.1  # [s]; when further behind, the schedule restarts
+LATEST = 0.1  # [s] of lateness beyond which the schedule restarts
 TOLERATED = FRAME / 2  # [s] of lateness from which long work in other threads waits
 PAUSE = 1e-3  # [s], minimum between frames, so that the network thread is not starved
 HANDOVER = 1e-4  # [s] after which another thread must hand the interpreter back

@@ -18,7 +18,7 @@ from onpath.app.storage.schema import classes, labs, leases
 
 log = logging.getLogger(__name__)
 
-DAY = 24 * 3600.0  # [s]
+DAY = 24 * 3600.0  # [s] in a day
 KEEP_DAYS, MOST_LABS = 365, 100_000
 CLASS_DAYS = 7
 TOUCH_INTERVAL = 300.0  # [s] between marks on the labs that are in use

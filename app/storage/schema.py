@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import sqlalchemy as sa
 
-LONGEST_CODE = 64  # [characters]
+LONGEST_CODE = 64  # [characters] of an access code
 
 metadata = sa.MetaData()
 meta = sa.Table(

@@ -13,8 +13,8 @@ from onpath.models.paths.frames import SlantedPlane
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.robots import Robot
 
-POINTS = 60  # of an outline
-HALF = 46.0  # of its size; the picture has 50 in each direction
+POINTS = 60  # number of points of an outline
+HALF = 46.0  # half the size of an outline, in a picture whose half-width is 50
 
 
 def preset_label(preset: str, robot: Robot, words: Words) -> str:

@@ -8,8 +8,8 @@ import numpy as np
 from onpath.app.common.templates import render
 from onpath.models.systems.robots import AXES, Robot
 
-SIZE = (640, 360)  # [px]
-MARGIN = 50  # [px]
+SIZE = (640, 360)  # [px], width and height of a sketch
+MARGIN = 50  # [px] around a sketch
 
 
 def robot_sketch(robot: Robot) -> str:

@@ -19,13 +19,13 @@ from websockets.http11 import Request, Response
 from onpath.app.common.access_codes import new_code
 
 CLASS, ALONE = "c", "l"
-COOKIE = "onpath"  # brings a browser back to its /l/NAME/
+COOKIE = "onpath"  # name of the cookie that brings a browser back to its /l/NAME/
 _PLACE = re.compile(r"/([cl])/([a-z0-9]{1,32})(?=[/?]|$)", re.ASCII | re.IGNORECASE)
 _LIKE_A_PLACE = re.compile(r"/[cl](?:[/?]|$)", re.IGNORECASE)
 _SOCKET = re.compile(r"/[cl]/[a-z0-9]{1,32}/?")
 _KNOWN = re.compile(rf"(?:^|;\s*){COOKIE}=([a-z0-9]{{12}})(?:;|$)")
 _START = ("/", "/index.html")
-_YEAR = 31_536_000  # [s]
+_YEAR = 31_536_000  # [s] in a year
 
 
 def class_address(code: str) -> str:

@@ -24,7 +24,7 @@ from onpath.assets.messages import preferred
 _log = logging.getLogger("websockets.server")
 
 T = TypeVar("T")
-MOST_ADDRESSES = 4096  # whose new tabs are counted
+MOST_ADDRESSES = 4096  # number of addresses whose new tabs are counted
 
 
 class PerAddress(Generic[T]):

@@ -20,10 +20,10 @@ from onpath.app.viser_adapter.secure_connection import SecureConnection
 
 FAMILY = "onpath-"
 SUBPROTOCOL = f"{FAMILY}2"
-GREETING = 90.0  # [s] within which the greeting must come; a page and its way may be slow
-NO_GREETING = 4001  # closes a connection whose first message is no valid greeting
+GREETING = 90.0  # [s] within which the greeting must come; a page and its network may be slow
+NO_GREETING = 4001  # websocket close code: the first message was no valid greeting
 MOST_UNSENT = 1 << 16  # [B] unsent, beyond which a page gets no further data
-AGAIN = 0.05  # [s] until a page that reads slowly is tried again
+AGAIN = 0.05  # [s] until sending to a page that reads slowly is tried again
 
 Message = Callable[[], bytes]
 """Makes a message; called on the network thread."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 OWN_FILES = 48  # open files besides the connections: database, pipes, modules
-FEWEST = 16  # connections with which a server is worth starting
+FEWEST = 16  # least number of connections with which a server starts
 
 
 @dataclass(frozen=True, slots=True)

@@ -30,7 +30,7 @@ FROM_BROWSER: tuple[type[Any], ...] = (
 """What a browser may send through viser's websocket; anything else is dropped."""
 GESTURES = (wire.ViewerCameraMessage, wire.SceneNodeDragMessage)
 """Messages handled at once: a browser may send many in a row, and their handlers never wait."""
-LONG = 4096  # [B]; a message counts once more for every so many bytes
+LONG = 4096  # [B]; a message counts once for each begun block of this size
 _DATA = (Opcode.TEXT, Opcode.BINARY, Opcode.CONT)
 _END_OF_REQUEST = b"\r\n\r\n"
 _BAD_REQUEST = b"HTTP/1.1 400 Bad Request\r\nConnection: close\r\nContent-Length: 0\r\n\r\n"

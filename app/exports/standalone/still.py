@@ -28,7 +28,7 @@ from onpath.models.systems.robots import Robot
 SIZE, DPI = (7.6, 5.2), 100
 COLOURS = 48
 """Of the picture: many enough for smooth lines, few enough for a small file."""
-TRACE = 1000  # rows
+TRACE = 1000  # rows of the log that the trace shows
 
 
 def still(robot: Robot, curve: Curve, runs: Sequence[Trajectory], words: Words) -> bytes:

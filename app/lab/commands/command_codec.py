@@ -20,7 +20,7 @@ from onpath.app.lab.lab import Command
 MOST_TEXT = 2000  # [characters], as in a text field
 LARGEST = 1e9  # magnitude of a number
 LONGEST = 250_000  # [characters] of a message: a stroke of `MOST_STROKE_POINTS`, with all digits
-MOST_WHY = 200  # [characters] of a reason
+MOST_WHY = 200  # [characters] of the reason of a refusal
 
 _AT_NAME = "at `$.do`"
 

@@ -21,7 +21,7 @@ from onpath.models.paths.path_design import PathDesign, drawn, from_curve
 from onpath.models.systems.parameter_specs import unknown_name
 
 MOST_STROKE_POINTS = 5000
-LONGEST_REMARK = 1000  # [characters]
+LONGEST_REMARK = 1000  # [characters] of a remark on a path
 LARGEST = 10.0  # [m], of any coefficient of a curve
 
 

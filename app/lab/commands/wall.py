@@ -16,7 +16,7 @@ from onpath.models.closed_loop.obstacles import FARTHEST, Wall
 from onpath.models.paths.curves import Curve
 
 CUT = 0.2  # share of the path's height that a new wall cuts off
-TURN = math.radians(5.0)  # [rad], step of a key
+TURN = math.radians(5.0)  # [rad] per press of a key
 
 
 def first_wall(curve: Curve) -> Wall:

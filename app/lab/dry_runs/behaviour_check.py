@@ -34,7 +34,7 @@ from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameter_specs import Spec
 from onpath.models.systems.parameters import Parameters
 
-FRAME = 1 / 60  # [s]
+FRAME = 1 / 60  # [s] of simulated time per frame
 REFUSALS = {"say.refused", "say.no_further"}
 """Keys of the messages with which a path is refused."""
 CONTROLS = {

@@ -28,7 +28,7 @@ from onpath.lessons.students import MOST_PASS, STUDENTS, random_students, though
 from onpath.lessons.task_schema import Event, Only, Reference, Setting, Task, Window
 from onpath.lessons.words import DEFAULT, ENGLISH
 
-FRAME = 1 / 30  # [s]
+FRAME = 1 / 30  # [s] of simulated time per frame
 CHECK = 12  # frames between evaluations of a task's checks
 TOGETHER = 48
 """Attempts that are simulated together: their closed loops are rows of arrays."""

@@ -27,7 +27,7 @@ from onpath.lessons.task_schema import Task
 from onpath.lessons.text_files import read_text
 from onpath.lessons.words import DEFAULT, Words
 
-FRAME = 1 / 60  # [s]
+FRAME = 1 / 60  # [s] of simulated time per frame
 CHECKS = 0.1  # [s] between evaluations of a task's checks
 
 

@@ -17,7 +17,7 @@ from onpath.models.paths.curves import TERMS
 from onpath.models.paths.path_design import MOST_POINTS
 from onpath.models.systems.catalogue import FIVE_BAR
 
-UNIT = 1e-6  # [m]
+UNIT = 1e-6  # [m], unit of the numbers of a path
 EDITED, DRAWN = "edited", "drawn"  # names of paths that are not presets
 
 Word = Annotated[str, msgspec.Meta(max_length=40, pattern=r"^[A-Za-z0-9_ -]*$")]

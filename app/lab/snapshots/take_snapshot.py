@@ -40,7 +40,7 @@ from onpath.models.paths.path_design import PathDesign
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
 
-TRACE = 1.6  # [s]
+TRACE = 1.6  # [s] of the past that a trace shows
 TRACE_POINTS = 120
 CURVE_POINTS = 160
 DESIGN_POINTS = 32

@@ -13,17 +13,17 @@ import {
     type RobotSheet, type SeatAnswer, type StateMessage, type Told, type WordsMessage,
 } from "./messages"
 
-const SECONDS = 60 // of samples that are kept
+const SECONDS = 60 // [s] of samples that are kept
 const [TIME, LENGTH, ANGLE, FORCE] = [1e4, 1e5, 1e4, 1e2] // units per second, metre, radian, newton
-const HEAD = 2 // numbers of a row before those of the robots
-const PATIENCE = [0, 500, 1000, 2000] // [ms], until it connects again
-const REFUSED = 4001 // the lab does not take the greeting
+const HEAD = 2 // numbers at the beginning of a row, before those of the robots
+const PATIENCE = [0, 500, 1000, 2000] // [ms] until each attempt to connect again
+const REFUSED = 4001 // websocket close code: the lab does not take the greeting
 const OTHER_VERSION = 1002
-const HANDED = 60 // [ms], at least, between two instants of the past that are asked for
+const HANDED = 60 // [ms], least time between two requests for the past
 const KEPT = ["labs", "teacher", "speaks", "sounds", "first_minute"]
-const FIRST_SHAPE = 1.75 // of the picture for which the lab's first camera is; see app/scene/stage.py
-const SEES = 2000 // [ms] between messages that the page is drawn
-const SETTLES = 400 // [ms], until what the server shows counts again
+const FIRST_SHAPE = 1.75 // width by height of the picture for which the lab's first camera is; see app/scene/stage.py
+const SEES = 2000 // [ms] between messages that say that the page is drawn
+const SETTLES = 400 // [ms] for which a local seek overrides the server's position
 
 /** Where the numbers of a field are among those that a row has besides for each robot. */
 type Fields = Map<string, { first: number; size: number; unit: number }>

@@ -8,16 +8,16 @@ import type { RemoteEngine } from "./channel"
 import { sayToViser } from "./kept"
 
 const OPENS = 40_000 // [ms] that a websocket may take to open; viser gives up after 5 s
-const VISERS = 5000 // [ms], viser's own limit
-const EACH = 1000 // [ms] until a picture that was lost is asked for again
-const LONGEST = 30_000 // [ms] between attempts that end before the picture is there
-const ASKS = 10_000 // [ms] without our websocket, after which the page asks why it does not open, and from then on between questions
+const VISERS = 5000 // [ms] that a websocket may take to open, viser's own limit
+const EACH = 1000 // [ms] until a lost picture is asked for again
+const LONGEST = 30_000 // [ms], longest time between attempts to get the picture
+const ASKS = 10_000 // [ms] without our websocket after which the page asks why it does not open, and between further questions
 const REFUSALS = 4 // greetings in a row that are refused, after which the page stays away
 const SLOW = 3000, MUCH = 0.75 // [ms] without a message, or with less than this share of the speed
 const SLEPT = 20_000, WAKES = 10_000 // [ms] between two checks of a page that slept; without a message after that
 const DEAD = 75_000, BUILDS = 150_000 // [ms] without a message, after which a connection counts as lost: with a lab, and without
 const MISSED = 10_000 // [ms] for which the lab may not know of a picture that was there
-const RELOADED = "onpath-reloaded" // when a page was loaded anew for another version of the lab
+const RELOADED = "onpath-reloaded" // key in the session: the version of the lab for which the page was loaded again
 const ORIGIN = "Onpath-Origin" // asks whether pages of an origin may connect; see request_filter.py
 
 /** What is going on; connect-… of the catalogues. */

@@ -3,7 +3,7 @@
 import { save } from "../core/dom"
 import type { DownloadMessage, DownloadPart, FileMessage, PageMessage, SendFile } from "./messages"
 
-const PART = 96_000 // [B], of a file for the server; the next one follows its answer
+const PART = 96_000 // [B] of a file per message to the server; the next one follows its answer
 
 /** A file for the page: what is told of it, and the share of it that has come. */
 export interface Download extends Pick<DownloadMessage, "number" | "name" | "text"> {

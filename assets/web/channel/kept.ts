@@ -3,7 +3,7 @@
 
 const FIRST = "viser-user:"
 const MOST_CODES = 8
-const LONGEST = 500 // of a value; the lab takes no longer ones
+const LONGEST = 500 // [characters] of a value; the lab takes no longer ones
 const BY_CLASS: readonly string[] = ["labs", "teacher"] // differ between the classes of a site
 const NAMES: Record<string, string> = { labs: "onpath_sessions", teacher: "onpath_teacher" }
 

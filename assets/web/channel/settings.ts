@@ -3,7 +3,7 @@
 import type { ValuesMessage } from "../core/form_data"
 import type { SetField } from "./messages"
 
-const PERIOD = 110 // [ms], at least, between two messages of a setting: a drag of 5 s sends at most 50
+const PERIOD = 110 // [ms], least time between two messages of a setting: a drag of 5 s sends at most 50
 const AGAIN = 1000 // [ms] after which a message that was not answered is sent again
 
 type Value = ValuesMessage["values"][string]

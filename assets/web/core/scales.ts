@@ -1,8 +1,8 @@
 // The scale of a slider, and numbers as people type them.
 
-const KNEE = 0.02 // of the largest number, below which a logarithmic scale through zero is nearly linear
-const FINE = 0.01 // of a number on a logarithmic scale: its step
-const NEAR = 0.012 // of a slider's length, within which it stops at a meaningful number
+const KNEE = 0.02 // share of the largest number below which a logarithmic scale through zero is nearly linear
+const FINE = 0.01 // step on a logarithmic scale, as a share of the number
+const NEAR = 0.012 // share of a slider's length within which it snaps to a meaningful number
 
 export class Scale {
     readonly low: number

@@ -27,9 +27,9 @@ export interface Shape {
     points: Point[]
 }
 
-const LONG = 0.03 // [m], of a unit vector
-const PIECE = 0.02 // [m] of the path, on which a spring along it is drawn
-const ARC = 0.05 // [m], radius of an angle
+const LONG = 0.03 // [m], length of a unit vector
+const PIECE = 0.02 // [m], length of a spring along the path
+const ARC = 0.05 // [m], radius of the arc of an angle
 const COILS = 7
 
 /** The shapes of a symbol; none if this robot has no such thing. */

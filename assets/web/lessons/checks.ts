@@ -39,8 +39,8 @@ export interface Verdict {
 
 type Words = Record<string, string>
 const TINY = 1e-9 // smallest divisor of a ratio
-const INSTANT = 1e-6 // [s]
-const BAND = 0.05 // of the largest value, within which a quantity has settled
+const INSTANT = 1e-6 // [s], tolerance of comparisons of times
+const BAND = 0.05 // share of the largest value within which a quantity counts as settled
 
 export function judge(checks: Check[], record: RunRecord, words: Words): Verdict[] {
     const begun = record.happenings.some(each => each.run === record.run)

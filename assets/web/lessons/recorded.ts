@@ -9,9 +9,9 @@ import { Simulation } from "../simulation/simulation"
 import type { Happening, RunRecord } from "./checks"
 
 const SIDES = ["left", "right"] // in the order of ROBOTS
-const EDITED = "own" // the name of a path that is no preset
-const FRAME = 1 / 60 // [s]
-const MOST = 3600 // samples: the lab keeps one minute, too
+const EDITED = "own" // name of a path that is no preset
+const FRAME = 1 / 60 // [s] between samples
+const MOST = 3600 // samples that are kept: one minute, as in the lab
 
 export class Recorded extends Simulation {
     happenings: Happening[] = []

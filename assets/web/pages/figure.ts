@@ -14,9 +14,9 @@ import { View } from "../parts/view"
 import { hearKeys } from "./figure_keys"
 import { LocalSettings } from "./settings"
 
-const SILENCE = 3000 // [ms], at least, between two announcements of the same kind
-const LATE = 0.15 // [s] lost lately, above which the page says that time runs late
-const TRACE = 4 // [s], of the tips' traces
+const SILENCE = 3000 // [ms], least time between two announcements of the same kind
+const LATE = 0.15 // [s] lost recently above which the page says that time runs late
+const TRACE = 4 // [s] of the past that the tips' traces show
 
 export class Figure {
     readonly engine = new LocalEngine(this.simulation, !this.inLesson)

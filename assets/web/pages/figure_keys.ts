@@ -4,8 +4,8 @@ import { isTyped, keyOf } from "../core/dom"
 import type { Point } from "../core/figure_data"
 import type { Figure } from "./figure"
 
-const PULL = 0.03 // [m], by which a key pulls
-const FURTHER = 0.005 // [m], by which a key pulls further in a lesson, as in the lab
+const PULL = 0.03 // [m], length of a pull by keys
+const FURTHER = 0.005 // [m] by which a key pulls further in a lesson, as in the lab
 const PULLS: Record<string, Point> = { a: [-1, 0], d: [1, 0], w: [0, 1], s: [0, -1] }
 const DIRECTIONS: Record<string, Point> = { ArrowRight: [1, 0], ArrowLeft: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }
 

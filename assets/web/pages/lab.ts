@@ -25,11 +25,11 @@ import { Transport } from "../parts/transport"
 import { Voice } from "../parts/voice"
 import { Shell } from "./shell"
 
-const LOOK = 250 // [ms] between looks for what viser has put into the page
+const LOOK = 250 // [ms] between checks of what viser has put into the page
 const RATES = [0.125, 0.25, 0.5, 1, 2, 4]
 const RESTS = 300 // [ms] for which the canvas keeps its size, until the lab is told of it
 const NUMBERS = 100 // [ms] between changes of the large numbers
-const LARGER = 1.7 // how much larger charts and lenses are drawn for a projector
+const LARGER = 1.7 // scale of charts and lenses for a projector
 const UPRIGHT = matchMedia("(width <= 36em), (aspect-ratio <= 4/5)")
 const PHONE = matchMedia("(width <= 36em)")
 

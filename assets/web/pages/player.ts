@@ -16,8 +16,8 @@ import { StepView, type Robots } from "../parts/step"
 import { Task } from "../parts/tasks"
 import { kernelsOf, Stage } from "./stage"
 
-const TALL = 760 // [px] of a step whose robots and plots leave room for its text
-const JUDGED = 500 // [ms] between two looks at the tasks
+const TALL = 760 // [px], height of a step that leaves room for its text beside robots and plots
+const JUDGED = 500 // [ms] between evaluations of the tasks
 
 export class Player implements Robots {
     index = 0

@@ -10,7 +10,7 @@ import type { LocalProgress } from "../lessons/progress"
 import { Figure } from "./figure"
 import { kernelsOf } from "./stage"
 
-const LARGEST = 5_000_000 // [B], of a progress file
+const LARGEST = 5_000_000 // [B] of a progress file
 
 export class StartPage {
     figure: Figure | null = null

@@ -7,9 +7,9 @@ export interface Range {
     top: number
 }
 
-const PARTS = 5 // of the range, at most, between round numbers
-const ROOM = 0.06 // of the range, beyond the values
-const LOOSE = 0.5 // of the present range: when no more is needed, the axis shrinks
+const PARTS = 5 // largest number of round steps in the range
+const ROOM = 0.06 // share of the range that is left free beyond the values
+const LOOSE = 0.5 // share of the present range below which the axis shrinks
 
 /** The range for values from `low` to `high`, between round numbers, with at least `least`. It grows at once, and shrinks
  * only when half of it would do, so that it does not flicker. */

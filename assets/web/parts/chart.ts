@@ -33,14 +33,14 @@ export interface Axes {
 }
 
 const MARGIN = { left: 42, right: 14, top: 24 }
-const BOTTOM = { times: 24, none: 8 } // [px], below the plot, with the numbers of the axis of time or without
-const TITLE = 9 // [px], from the top to the middle of the title
+const BOTTOM = { times: 24, none: 8 } // [px] below the plot, with the numbers of the axis of time or without
+const TITLE = 9 // [px] from the top to the middle of the title
 const FONT = "12px system-ui, sans-serif"
 const BOLD = "600 13px system-ui, sans-serif"
-const HALF = 8 // [px], of the height of a label
-const TRIED = 25 // times at which a line may be named
-const ASIDES = [[-14, 14], [-32, 32], [-50, 50]] // [px], from the line to the middle of its name
-const LEAST_PEAK = 0.004 // of the height, below which a peak is not labelled
+const HALF = 8 // [px], half the height of a label
+const TRIED = 25 // number of places along a line that are tried for its name
+const ASIDES = [[-14, 14], [-32, 32], [-50, 50]] // [px], tried distances of the middle of its name from a line
+const LEAST_PEAK = 0.004 // share of the height below which a peak is not labelled
 
 export class Chart {
     readonly plot: HTMLElement

@@ -6,7 +6,7 @@ import { phrase, significant } from "../core/words"
 import type { Chart } from "./chart"
 import { firstAfter, valueAt, type Curve } from "./curves"
 
-const POINTS = 33 // that keys move; in eight seconds, four a second
+const POINTS = 33 // number of points that keys move; in eight seconds, four a second
 const MOST = 160 // points that are kept
 const STEPS: Record<string, number> = { ArrowUp: 1, ArrowDown: -1, PageUp: 5, PageDown: -5, Home: -1000, End: 1000 }
 

@@ -7,7 +7,7 @@ import type { Side } from "../simulation/side"
 
 const POINTS_OF_ELLIPSE = 49
 const [FILL, LETTERS] = [0.22, "600 0.95rem system-ui, sans-serif"]
-const BEHIND = 0.014 // [m], of the text of an arrow behind its tail
+const BEHIND = 0.014 // [m] from the tail of an arrow to its text
 
 /** What is drawn of a robot. */
 export interface Scene {

@@ -8,7 +8,7 @@ import { phrase, WARNS, written, type Texts } from "../core/words"
 import { icon } from "./icons"
 import { PolePlane } from "./pole_plane"
 
-const RESTS = 300 // [ms] after the last touch, for which the hand's value stays
+const RESTS = 300 // [ms] after the last touch for which the hand's value stays
 const TOLD = 5000 // [ms] for which a row says that the lab has another value than the hand wanted
 const PAGE = 10 // steps of Page Up and Page Down
 

@@ -9,19 +9,19 @@ import { drawShapes, shapesOf } from "../core/symbols"
 import { phrase, significant, written, type Texts } from "../core/words"
 
 const FACTORS = [1.5, 3, 6, 12, 20]
-const FITS = 0.62 // of the radius: what is to be seen is within
-const CLOSER = 0.45 // the same before the lens goes closer
-const HIGHER = 0.92 // of the radius: the middle of what is to be seen is above the bar
-const RIM = 5 // [px], from the edge, which letters keep off
-const HALF = 8 // [px], of the height of letters
+const FITS = 0.62 // share of the radius that what is to be seen fills after a change of scale
+const CLOSER = 0.45 // share of the radius below which the lens may go closer
+const HIGHER = 0.92 // of the radius, from the top to the middle of what is to be seen, which is above the bar
+const RIM = 5 // [px] between letters and the edge
+const HALF = 8 // [px], half the height of letters
 const [SMALL, TINY] = [55, 40] // [px], of a radius with no room for words, and none for a scale
-const PATIENCE = 900 // [ms] for which it could have gone closer
-const GLIDE = 120 // [ms], in which most of a change of scale is done
-const TRACE = 2 // [s]
-const FORCE = 2.2 // [px/N]
-const LONGEST = 46 // [px], of an arrow of a force
-const WEAK = 0.05 // [N], below which a force is not drawn
-const CALM = 2e-4 // [m], of an error out of the path's plane that does not turn the picture
+const PATIENCE = 900 // [ms] for which it could have gone closer before it does
+const GLIDE = 120 // [ms], time constant of a change of scale
+const TRACE = 2 // [s] of the past that the trace shows
+const FORCE = 2.2 // [px/N], length of the arrow of a force
+const LONGEST = 46 // [px], longest arrow of a force
+const WEAK = 0.05 // [N] below which a force is not drawn
+const CALM = 2e-4 // [m] of error out of the path's plane up to which the picture is not turned
 
 /** Two directions at right angles, in which the lens looks. */
 type Plane = readonly [Vector, Vector]

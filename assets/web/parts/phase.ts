@@ -6,7 +6,7 @@ import { disc, letters, Sheet, stroke, tones, type Pixel } from "../core/ink"
 import { phrase, significant, type Texts } from "../core/words"
 import { axisFor, type Range } from "./axis"
 
-const SECONDS = 3 // of each robot's way
+const SECONDS = 3 // [s] of each robot's past that are drawn
 const EDGE = 16 // [px] around the plane
 const FONT = "12px system-ui, sans-serif"
 const BOLD = "600 13px system-ui, sans-serif"

@@ -11,11 +11,11 @@ export interface Pole {
     imaginary: number
 }
 
-const RIGHT = 0.2 // of the width, right of the imaginary axis
-const MARGIN = 14 // [px]
-const LEAST = 5 // [1/s], smallest range
-const MARKED = 60 // [px], at least, between marks on the axis
-const SIZE = 5 // [px], of half a mark
+const RIGHT = 0.2 // share of the width to the right of the imaginary axis
+const MARGIN = 14 // [px] around the plane
+const LEAST = 5 // [1/s], smallest range of the real axis
+const MARKED = 60 // [px], least distance of marks on the axis
+const SIZE = 5 // [px], half the size of a cross or plus
 const FONT = "12px system-ui, sans-serif"
 const BOLD = "700 15px system-ui, sans-serif"
 const PLUS: Pixel[][] = [[[-SIZE - 1, 0], [SIZE + 1, 0]], [[0, -SIZE - 1], [0, SIZE + 1]]]

@@ -6,7 +6,7 @@ import { axisFor } from "./axis"
 import { Chart, type Line } from "./chart"
 import { firstAfter } from "./curves"
 
-const READ = 150 // [ms] between changes of the numbers
+const READ = 150 // [ms] between changes of the numbers, so that they can be read
 
 export class Row {
     readonly chart: Chart

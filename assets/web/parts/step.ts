@@ -9,7 +9,7 @@ import type { Student } from "../lessons/student"
 import { ask } from "./asked"
 import { Comparison, elementOf, predict, predictionAt, type Prediction, type PredictionForm } from "./predictions"
 
-const SMALLEST = 0.75 // of the size of a formula
+const SMALLEST = 0.75 // smallest scale of a formula that is too wide
 
 /** The robots, as far as a step acts on them. */
 export interface Robots {

@@ -12,10 +12,10 @@ import { PlotMenu } from "./plot_menu"
 import { Row } from "./row"
 import { tableOf } from "./table"
 
-const SECONDS = 10 // on the axis
+const SECONDS = 10 // [s] of the axis of time
 const [MINUTE, SPARE] = [60, 5] // [s], that are kept, and what is dropped at once
-const ROUND = 5e-4 // by how much the radius of a circle may vary
-const SPOKEN = 500 // [ms] between two values for a screen reader
+const ROUND = 5e-4 // relative variation of the radius up to which a path is a circle
+const SPOKEN = 500 // [ms] between two values that a screen reader speaks
 const STEPS: Record<string, number> = { ArrowLeft: -0.1, ArrowDown: -0.1, ArrowRight: 0.1, ArrowUp: 0.1, PageDown: -1, PageUp: 1 }
 const DISTANCE = "distance" // the first row, which is always there
 const PHASE = "phase" // the plane, which stands beside the rows

@@ -11,7 +11,7 @@ export interface TableColumn extends Curve {
     unit: string
 }
 
-const ROWS = 60 // at about this many instants
+const ROWS = 60 // number of rows, about
 
 /** A table that is made when it is opened. */
 export function tableOf(texts: Texts, label: () => string, columns: () => readonly TableColumn[], spans: () => readonly Span[]): HTMLElement {

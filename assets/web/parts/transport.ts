@@ -5,7 +5,7 @@ import type { Engine } from "../core/engine"
 import { phrase, written, type Texts } from "../core/words"
 
 const RATES = [1, 0.5, 0.25, 0.1]
-const KEPT = 800 // [ms]: who presses Hold for longer lets go with it
+const KEPT = 800 // [ms]; a press on Hold that is longer lets go at its end
 
 export class Transport {
     readonly element: HTMLElement

@@ -7,8 +7,8 @@ import { Drawings } from "./drawings"
 import type { Path } from "../simulation/path"
 import type { Side } from "../simulation/side"
 
-const NARROW = 240, MARGIN = 0.025 // [px], [m] that a picture of less width leaves out at each side
-const FAINT = 0.4 // how opaque the trace is
+const NARROW = 240, MARGIN = 0.025 // [px], width of a narrow picture, and [m] that it leaves out at each side
+const FAINT = 0.4 // opacity of the trace
 const [REACH, NEAR] = [44, 22] // [px], from the tip and from a control point, within which they are grabbed
 const TIE = 8 // [px] by which a point must be nearer than the tip, unless it is selected
 

@@ -7,11 +7,11 @@ import { phrase, withoutNumbers, type Texts } from "../core/words"
 import type { RemoteEngine } from "../channel/channel"
 import type { Command, StateMessage } from "../channel/messages"
 
-const AGAIN = 8000 // [ms], between announcements that differ only in numbers
-const REST = 1500 // [ms], between any two
-const STAYS = 8000, PER_LETTER = 60 // [ms] that a notice stays, unless it is pointed at
-const LOW = 220, OCTAVE = 25 // [Hz], [mm]
-const LOUD = 0.08, SOON = 0.06 // [s]
+const AGAIN = 8000 // [ms], least time between announcements that differ only in numbers
+const REST = 1500 // [ms], least time between two announcements
+const STAYS = 8000, PER_LETTER = 60 // [ms] that a notice stays, and more per letter, unless it is pointed at
+const LOW = 220, OCTAVE = 25 // [Hz] of the tone without an error, and [mm] of error per octave above it
+const LOUD = 0.08, SOON = 0.06 // loudness of a tone, and [s] in which it changes
 const TONES = 100 // [ms] between changes of the tones
 const CALM = matchMedia("(prefers-reduced-motion: reduce)")
 

@@ -4,7 +4,7 @@ import { sampleAt, type Act, type Change, type Engine, type PathShape, type RowD
 import { caption } from "./captions"
 import type { Moment, Simulation } from "./simulation"
 
-const FRAME = 1 / 60 // [s], of a step
+const FRAME = 1 / 60 // [s] of simulated time per frame
 const LONGEST = 0.1 // [s] that a picture may be late before simulated time falls behind
 
 export class LocalEngine implements Engine {

@@ -25,7 +25,7 @@ type Complex = readonly [number, number]
 type Polynomial = readonly number[]
 
 const LEAST_DECAY = 1e-3, NO_OSCILLATION = 0.995 // [1/s] and a damping ratio, as in models/control/poles.py
-const STEPS = 100 // at most, to the roots; a double root takes about 30
+const STEPS = 100 // of the iteration to the roots; a double root takes about 30
 const ROUNDING = 1e-12 // imaginary parts of z below this are rounding errors
 const SETTLING = new Set(["no_overshoot", "no_oscillation", "damping"])
 
