@@ -63,6 +63,23 @@ def test_a_new_lab_speaks_the_language_of_its_browser(server: LabServer) -> None
         assert lab is not None and lab.scheduled.lab.words.language == "de"
 
 
+def test_a_page_that_waits_for_a_place_reads_why_in_the_language_of_its_browser() -> None:
+    server = LabServer("127.0.0.1", 0, loop_cache(), ServerOptions(most_clients=1))
+    address = f"ws://127.0.0.1:{server.server.get_port()}"
+    german: Any = {"Accept-Language": "de-AT,de;q=0.9,en;q=0.5"}
+    try:
+        with Student(address) as inside, Student(address, **german) as outside:
+            inside.open()
+            inside.read(lambda: inside.fields)
+            outside.open()
+            outside.read(lambda: "wait" in outside.told)
+            words = Words("de")
+            text = f"{words('full.text', places=1)} {words('full.before', count=0)}"
+            assert outside.told["wait"]["text"] == text
+    finally:
+        server.stop()
+
+
 def test_the_teachers_page_follows_the_teachers_language_whoever_is_shown() -> None:
     room, german = Classroom(), Words("de")
     server = LabServer("127.0.0.1", 0, loop_cache(), ServerOptions(classrooms=[room]))
