@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -94,7 +94,7 @@ def lesson_end(run: LessonView) -> tuple[Markup, list[dict[str, Any]]]:
     return _end_html(run, parts), _ended_charts(run, parts)
 
 
-def _end_html(run: LessonView, parts: Sequence[EndedPart]) -> Markup:
+def _end_html(run: LessonView, parts: list[EndedPart]) -> Markup:
     fronts = {part.chapter.lesson.name: part.chapter.lesson.front for part in parts}
     return part_of_page(
         "lesson/end.html",
@@ -111,7 +111,7 @@ def _end_html(run: LessonView, parts: Sequence[EndedPart]) -> Markup:
     )
 
 
-def _ended_charts(run: LessonView, parts: Sequence[EndedPart]) -> list[dict[str, Any]]:
+def _ended_charts(run: LessonView, parts: list[EndedPart]) -> list[dict[str, Any]]:
     """The charts of sketches at the end, in the order of their places in its HTML."""
     charts = list[dict[str, Any]]()
     for part in parts:

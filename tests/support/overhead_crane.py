@@ -70,7 +70,7 @@ def overhead_crane() -> Robot:
         coordinate_names=("x_m", "y_m", "z_m", "a_rad", "b_rad"),
         parameters=alpha,
         parameter_names=("alpha",),
-        mass=ca.hessian(kinetic, v)[0],
+        mass=ca.jacobian(ca.gradient(kinetic, v), v),
         potential_energy=GRAVITY * ((HOIST + ROD) * q[2] + MOMENT * direction(q)[2]),
         friction=ca.vertcat(0.5 * v[:3], 0.005 * v[3:]),
         inputs=3,

@@ -32,7 +32,8 @@ def test_where_its_zero_dynamics_change_is_that_of_the_closed_form() -> None:
     rest = robot.rest(np.zeros(3))
     for alpha in (0.8, CRITICAL - 1e-3, CRITICAL + 1e-3):
         parameters = CraneParameters(alpha=alpha)
-        assert (growth_rate(robot, parameters, rest) > 0) == (alpha > CRITICAL)
+        rate = growth_rate(robot, parameters, rest)
+        assert rate is not None and (rate > 0) == (alpha > CRITICAL)
 
 
 def test_nor_with_that_of_the_readme(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
