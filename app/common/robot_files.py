@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import shlex
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -15,6 +16,8 @@ from onpath.models.systems.guessed_numbers import told_guess
 from onpath.models.systems.rigid_chain import ChainSource
 from onpath.models.systems.robot_file import read_robot
 from onpath.models.systems.robots import RobotEntry
+
+log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -60,6 +63,7 @@ def robot_of_file(file: Path, options: Options) -> tuple[RobotEntry, tuple[Messa
     Raises:
         ValueError: see `read_robot`.
     """
+    log.info("reading %s, and choosing a pose", file.name)  # a server says so, others below
     with announced(f"OnPath: reading {file.name} …"):
         read = read_file(file, options)
         return add_read(read), read.remarks

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from onpath.app.exports.figures import ShownFigure, save
+from onpath.app.exports.figures import ShownFigure, save, without_math
 from onpath.models.arrays import Array
 from onpath.models.control.rank_test import cell_centres, rank_grid, section_map
 from onpath.models.paths.curves import circle
@@ -35,7 +35,7 @@ def rank_figure(entry: RobotEntry, parameters: Parameters) -> Figure:
     axes = figure.subplots(1, 1 + in_space, squeeze=False, gridspec_kw=ratios)[0].tolist()
     alpha = getattr(parameters, "alpha", None)
     condition = "" if alpha is None else f", α = {alpha:g}, link straight"
-    figure.suptitle(f"Rank test (11): {entry.label}{condition}")
+    figure.suptitle(f"Rank test (11): {without_math(entry.label)}{condition}")
     low, high = _extent(robot)
     grid = rank_grid(robot, parameters, low, high, CELLS)
     first, second = robot.frame.axes

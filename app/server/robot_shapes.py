@@ -18,6 +18,7 @@ def prepare_shapes(chain: Chain) -> None:
     """Read the meshes of a chain; those that cannot be read are left out, with a warning."""
     if is_own(chain):
         return
+    log.info("reading the meshes")
     process = ExportProcess()
     try:
         shapes, left_out = process.call(LONGEST, read_shapes, chain)

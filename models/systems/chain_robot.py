@@ -69,6 +69,7 @@ from onpath.models.systems.robots import (
     StopCondition,
 )
 from onpath.models.systems.system import MechanicalSystem, mechanical_system
+from onpath.models.systems.xml_elements import shown
 
 STEPS = (0.25, 0.5, 0.75, 1.0, 1.0, 1.0, 1.0)
 """Shares of the way from home to y, each with a step of Newton's method."""
@@ -405,7 +406,7 @@ def _limit_stops(chain: Chain, q: ca.SX) -> tuple[StopCondition, ...]:
         joint = chain.joints[worst]
         limit = joint.low if q[worst] < joint.low else joint.high
         unit = f"{1e3 * limit:.0f} mm" if joint.slides else f"{math.degrees(limit):.0f}°"
-        return Message("stop.joint", {"joint": joint.name, "limit": unit})
+        return Message("stop.joint", {"joint": shown(joint.name), "limit": unit})
 
     return () if beyond.is_zero() else (StopCondition(beyond, limit_passed),)
 

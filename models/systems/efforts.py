@@ -11,6 +11,7 @@ from onpath.models.arrays import Array
 from onpath.models.errors import Message
 from onpath.models.systems.rigid_chain import Chain, Joint
 from onpath.models.systems.robots import Robot
+from onpath.models.systems.xml_elements import shown
 
 
 def stated(chain: Chain) -> Message | None:
@@ -46,7 +47,7 @@ def exceeded(robot: Robot, largest: Array) -> Message | None:
     gave = f"{most:.0f}" if most >= 100 else f"{most:.3g}"
     return Message(
         "efforts.exceeded",
-        {"joint": joint.name, "gave": f"{gave} {joint.unit}", "limit": _limit(joint)},
+        {"joint": shown(joint.name), "gave": f"{gave} {joint.unit}", "limit": _limit(joint)},
     )
 
 

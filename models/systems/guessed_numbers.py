@@ -23,6 +23,7 @@ RESTS_ON: Mapping[Quantity, tuple[str, ...]] = {
 }
 """Kinds of guesses that decide on each quantity."""
 
+LONGEST_LINE = 500  # of what is told to be typed, [characters]
 NAMES: Mapping[str, Message] = {
     "mass": Message("guess.mass"),
     "inertia": Message("guess.inertia"),
@@ -94,8 +95,8 @@ def with_mark(text: str, guesses: Iterable[Guess], name: str = "", language: str
 
 
 def told_guess(guess: Guess) -> Message:
-    """A guess with what to type to settle it."""
-    if not guess.line:
+    """A guess with what to type to settle it, unless a name in it cannot be typed."""
+    if not guess.line or not guess.line.isprintable() or len(guess.line) > LONGEST_LINE:
         return guess.message
     return Message("guess.told", {"what": guess.message, "line": guess.line})
 

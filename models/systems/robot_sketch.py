@@ -10,6 +10,7 @@ import numpy as np
 
 from onpath.models.arrays import Array
 from onpath.models.systems.rigid_chain import Joint
+from onpath.models.systems.xml_elements import shown
 
 WIDTH, HEIGHT = 320.0, 240.0
 MARGIN = 16.0
@@ -64,7 +65,7 @@ def described(label: str, name: str, text: str, drawing: str, joints: Iterable[J
 def _limits(joint: Joint) -> str:
     """What a joint can do, such as "joint1: -90° to 90°, at most 12 N m"."""
     most = "" if math.isinf(joint.effort) else f", at most {joint.effort:g} {joint.unit}"
-    return f"{joint.name}: {_range(joint)}{most}"
+    return f"{shown(joint.name)}: {_range(joint)}{most}"
 
 
 def _range(joint: Joint) -> str:

@@ -55,6 +55,7 @@ from onpath.models.systems.efforts import efforts
 from onpath.models.systems.law_parameters import LEVEL_SET
 from onpath.models.systems.parameters import look_ahead_time, time_step
 from onpath.models.systems.robots import Robot
+from onpath.models.systems.xml_elements import shown
 
 
 def figure_numbers(figure: FigureChoice) -> dict[str, Any]:
@@ -184,7 +185,7 @@ def _efforts(robot: Robot) -> list[dict[str, Any]]:
     if limits is None or robot.chain is None:
         return []
     return [
-        {"motor": i, "joint": joint.name, "most": joint.effort, "unit": joint.unit}
+        {"motor": i, "joint": shown(joint.name), "most": joint.effort, "unit": joint.unit}
         for i, joint in enumerate(robot.chain.joints)
         if math.isfinite(joint.effort)
     ]
