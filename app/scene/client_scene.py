@@ -244,5 +244,6 @@ def _callbacks(post: Post, robot: Robot) -> SceneCallbacks:
         on_point_selected=lambda index: post(c.SelectPoint(index)),
         on_wall_moved=lambda at: post(c.MoveWall(plane_coordinates(robot, at))),
         on_wall_turned=lambda end, at: post(c.SwingWall(end, plane_coordinates(robot, at))),
+        on_joint_dragged=lambda joint, at: post(c.DragJoint(joint, robot.output_at(at))),
         on_start_moved=lambda at: post(c.MoveStart(plane_coordinates(robot, at))),
     )

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -42,6 +43,8 @@ class SceneCallbacks:
         on_wall_moved: the wall's middle has a new position, shape (3,), in the robot's frame [m].
         on_wall_turned: an end of the wall, 1 or -1, must point at a position, shape (3,), [m].
         on_start_moved: the start of the next run has a new position, shape (3,), [m].
+        on_joint_dragged: the link behind the joint with a number is dragged to a position, shape
+            (3,), [m].
     """
 
     on_grab: Callable[[str, np.ndarray], None] = _ignore
@@ -52,6 +55,7 @@ class SceneCallbacks:
     on_wall_moved: Callable[[np.ndarray], None] = _ignore
     on_wall_turned: Callable[[int, np.ndarray], None] = _ignore
     on_start_moved: Callable[[np.ndarray], None] = _ignore
+    on_joint_dragged: Callable[[int, np.ndarray], None] = _ignore
 
 
 class Mouse:
@@ -79,6 +83,7 @@ class Mouse:
         self.path_first = False
         self._grip: tuple[DragPlane, np.ndarray] | None = None
         self._covered: int | None = None
+        self._bodies = list[tuple[Any, Any]]()  # callbacks and their nodes
         self._point = DragByOffset(pointer)
 
     def pull_in(self, plane: str) -> None:
@@ -94,6 +99,26 @@ class Mouse:
         """Listen to a node of control points; see `PathNodes`."""
         points.on_drag("left")(self._point_dragged)
         points.on_click()(self._point_clicked)
+
+    def connect_bodies(self, bodies: Sequence[viser.BatchedMeshHandle], on: bool) -> None:
+        """Listen to the nodes of moving bodies, by which joints are dragged, or no longer."""
+        for handler, body in self._bodies:
+            body.remove_drag_callback(handler)
+        self._bodies = []
+        for joint, body in enumerate(bodies) if on else ():
+            handler = partial(self._body_dragged, joint)
+            body.on_drag("left")(handler)
+            self._bodies.append((handler, body))
+
+    async def _body_dragged(self, joint: int, event: DragEvent) -> None:
+        robot = event.instance_index
+        if robot is None or robot >= len(self._sides):  # a browser may send any number
+            return
+        pressed = np.array(event.start_position) - self._stage.bases[self._sides[robot]]
+        plane = DragPlane(pressed, self._stage.path_plane.normal)
+        target = self._pointer.place(event, event.end_position, robot, plane)
+        if target is not None:
+            self._hooks.on_joint_dragged(joint, target)
 
     async def _tip_dragged(self, event: DragEvent) -> None:
         robot = event.instance_index

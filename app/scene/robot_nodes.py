@@ -199,6 +199,7 @@ class RobotNodes:
             BodyNode(scene, number, mesh, list(bases), poses)
             for number, mesh in enumerate(stage.bodies)
         ]
+        self.bodies = [body.node for body in bodies]
         self._bars = [] if bodies else self._add_bars(scene, counts, poses)
         self._parts = self._add_parts(scene, poses)
         shade([self._parts, *(each.node for each in (*self._bars, *bodies))], stage)

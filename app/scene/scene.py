@@ -161,8 +161,13 @@ class Scene:
             self._zone = PlaneNodes(self._client.scene, "/zone", self._stage, picture)
 
     def show_start(self, visible: bool) -> None:
-        """Show the start of the next run, which can be dragged, or hide it."""
-        self._start.show(visible)
+        """Show the start of the next run, which can be dragged, or hide it.
+
+        While it is shown, it can also be moved by the links of a robot from a file.
+        """
+        if visible != self._start.is_shown:
+            self._start.show(visible)
+            self.mouse.connect_bodies(self._machine.bodies, visible)
 
     def frame_camera(self, top: float) -> None:
         """Point the client's camera so that both robots fill the canvas below a margin [px]."""

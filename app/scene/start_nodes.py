@@ -51,6 +51,11 @@ class StartNodes:
         self._arrows: Arrows | None = None
         self._start = np.zeros((2, 3))
 
+    @property
+    def is_shown(self) -> bool:
+        """Whether the start is shown."""
+        return self._ball is not None
+
     def show(self, visible: bool) -> None:
         """Show or hide the start."""
         if visible and self._ball is None:

@@ -593,7 +593,7 @@ wall-forces = Kraft auf die Wand
 
 start-title = Start
 start-show = Zeigen, um ihn zu ziehen
-start-show_hint = Eine grüne Kugel in der Szene: Dort beginnt der nächste Lauf; ihr Pfeil ist die Geschwindigkeit
+start-show_hint = Eine grüne Kugel in der Szene: Dort beginnt der nächste Lauf; ihr Pfeil ist die Geschwindigkeit. Solange sie zu sehen ist, lassen sich auch die Glieder eines Roboters aus einer Datei ziehen: Jedes dreht dort sein Gelenk
 start-reset = Dort beginnen
 start-default = Auf der Bahn
 
@@ -2017,3 +2017,7 @@ robots-reading = { $file } wird mit dem Endpunkt { $tip } gelesen …
 robots-shapes = Die Netze für den Endpunkt { $tip } werden gelesen …
 robots-not_built = { $file } mit dem Endpunkt { $tip }: { $reason }. Der Roboter bleibt, wie er war
 robots-not_read = sie konnte nicht gelesen werden ({ $reason })
+
+## Joints that are dragged
+
+error-no_such_joint = dieser Roboter hat kein solches Gelenk

@@ -508,7 +508,7 @@ wall-forces = Force on the wall
 
 start-title = Start
 start-show = Show it, to drag it
-start-show_hint = A green ball in the scene: where the next run starts; its arrow is the velocity
+start-show_hint = A green ball in the scene: where the next run starts; its arrow is the velocity. While it is shown, the links of a robot from a file can be dragged, too: each turns its joint there
 start-reset = Reset to it
 start-default = On the path
 
@@ -1609,3 +1609,7 @@ robots-reading = Reading { $file } with the end-point { $tip } …
 robots-shapes = Reading the meshes for the end-point { $tip } …
 robots-not_built = { $file } with the end-point { $tip }: { $reason }. The robot stays as it was
 robots-not_read = it could not be read ({ $reason })
+
+## Joints that are dragged
+
+error-no_such_joint = this robot has no such joint

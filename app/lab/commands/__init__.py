@@ -50,7 +50,7 @@ from onpath.app.lab.commands.pulse import Pulse
 from onpath.app.lab.commands.robots import ChooseRobot, Identify
 from onpath.app.lab.commands.settings import ResetParameters, Set
 from onpath.app.lab.commands.sharing import Share, UseShared
-from onpath.app.lab.commands.start import MoveStart, StartOnPath
+from onpath.app.lab.commands.start import DragJoint, MoveStart, StartOnPath
 from onpath.app.lab.commands.time import (
     GoOn,
     LookAt,
@@ -79,6 +79,7 @@ __all__ = [
     "CloseLesson",
     "Command",
     "DemonstrateStep",
+    "DragJoint",
     "DrawPath",
     "EndMove",
     "FinishLesson",

@@ -283,6 +283,7 @@ export type Command =
     | { do: "ChoosePath"; name: string }
     | { do: "ChooseRobot"; name: string }
     | { do: "CloseLesson" }
+    | { do: "DragJoint"; joint: number; target: number[] | number[][] }
     | { do: "DrawPath"; stroke: number[] | number[][] }
     | { do: "EndMove" }
     | { do: "FinishLesson" }
