@@ -228,11 +228,11 @@ export class Column implements Robots {
             else words.insertBefore(each, next)
         }
         if (form && !words.contains(form)) view?.offer(form)
-        words.scrollTop = scrollTop // the browser has lost what it would keep in its place
         for (const each of kept) if (parts.includes(each) && each.dataset["block"]) view?.prepare(Number(each.dataset["block"]))
         const successor = at && kept.find(each => each.dataset["block"] === at.dataset["block"])
         if (successor) (controlsOf(successor)[place] ?? successor.querySelector<HTMLElement>("summary, button"))?.focus({ preventScroll: true })
         if (view) this.follow()
+        words.scrollTop = scrollTop // the browser has lost what it would keep in its place
     }
 
     /** A step has been opened, perhaps by a key or by someone whose focus was in the column. */
