@@ -49,5 +49,5 @@ def test_laws_are_compared_while_the_lab_goes_on(browser: Browser, server: LabSe
 def _lines(tab: Tab) -> list[str]:
     """First word of the law and the distance of each row."""
     rows = tab.page.locator(f"{TABLE} tbody tr").all()
-    cells = [row.locator("td").all_inner_texts() for row in rows]
+    cells = [row.locator("th, td").all_inner_texts() for row in rows]
     return [f"{law.split()[0]} {distance}" for law, distance, *_ in cells]

@@ -167,6 +167,8 @@ def test_a_dark_teachers_page_can_be_read(browser: Browser) -> None:
     room = Classroom()
     server = LabServer("127.0.0.1", 0, LoopCache(), ServerOptions(classrooms=[room]))
     tab = visit(browser, server, path=class_address(room.code))
+    tab.page.get_by_role("dialog").wait_for()  # the card of the class
+    tab.page.keyboard.press("Escape")
     tab.teach(shown(room.key))
     tab.page.get_by_text(room.code.upper()).or_(tab.page.get_by_text(room.code)).first.wait_for()
     wait_for(tab.is_built)

@@ -83,7 +83,7 @@ def test_the_force_on_the_wall_is_shown(tab: Tab) -> None:
     wait_for(lambda: tab.simulation.wall is not None)
     tab.elapse(3.0)
     shown = tab.row("Wall").locator("xpath=ancestor::*[@role='group']")
-    expect(shown).to_contain_text("Path following: 1.0 N")
+    expect(shown).to_contain_text("Path following 1.0 N")
 
 
 def test_a_start_is_dragged_and_typed_and_taken_at_reset(tab: Tab) -> None:
