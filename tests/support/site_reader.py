@@ -57,9 +57,14 @@ class SiteReader:
     def passed(self) -> bool:
         return "Passed" in self.page.locator(".step.open .task .verdicts").first.inner_text()
 
-    def slide(self, name: str, value: float) -> None:
-        slider = self.page.locator(".step.open").get_by_role("slider", name=name)
-        slider.fill(str(value))
+    def enter(self, name: str, value: float) -> None:
+        """Type a number into the box of a setting."""
+        box = self.box(name)
+        box.fill(str(value))
+        box.press("Enter")
+
+    def box(self, name: str) -> Locator:
+        return self.page.locator(".step.open").get_by_role("textbox", name=name)
 
     def focus(self, what: Locator) -> None:
         """Press Tab until something has the focus."""

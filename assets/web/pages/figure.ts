@@ -86,8 +86,8 @@ export class Figure {
     /** Advance by a number of ticks, independently of the clock. */
     readonly advance = (ticks: number) => this.simulation.advance(ticks)
 
-    /** Put several plots where they are seen with what one sets: if the text is below the robots, in the place of the lenses,
-     * or below the form where there is no room for both. */
+    /** Put several plots where they are seen with what one sets: on a telephone in the place of the lenses, or below the form
+     * where there is no room for both. */
     place(isWide: boolean, isTall: boolean): void {
         const { strip, bar, brakes, data, form } = this
         if (!data.controls.includes("plot")) return

@@ -16,6 +16,7 @@ import { StepView, type Robots } from "../parts/step"
 import { Task } from "../parts/tasks"
 import { kernelsOf, Stage } from "./stage"
 
+const PHONE = 480 // [px], least width of a step that is not on a telephone
 const TALL = 760 // [px], height of a step that leaves room for its text beside robots and plots
 const JUDGED = 500 // [ms] between evaluations of the tasks
 
@@ -147,7 +148,8 @@ export class Player implements Robots {
     }
 
     private placePlots(): void {
-        this.stage?.figure.place(isWide(this.section), this.section.clientHeight >= TALL)
+        const { section } = this
+        this.stage?.figure.place(isWide(section) || section.clientWidth >= PHONE, section.clientHeight >= TALL)
     }
 
     /** Show another robot, with all else as it is; its run begins. */
