@@ -80,7 +80,7 @@ ROWS = {
     "own laws": Row(names=(LABEL,)),
     "drag of a path's points, with its checks": Row(said=("standalone.drag_hint",)),
     "points added and removed, freehand strokes, undo": Row(
-        said=("design.add", "design.remove", "design.draw", "design.undo")
+        said=("design.add", "design.remove", "scene.draw", "design.undo")
     ),
     "poles, in words and numbers": Row((".form [data-kind=note]",)),
     "distance over time": Row((".plot canvas",), ("chart.title",)),
