@@ -32,7 +32,9 @@ def _not_built(cards: Sequence[RobotCard], words: Words) -> Iterator[RobotCard]:
     offered = set[tuple[Path, str]]()
     for card in cards:
         given = given_file(card.name)
-        for tip in () if given is None else given.tips:
+        if given is None:
+            continue
+        for tip in given.tips:
             key = given.file, tip
             if key not in offered and not built_with(given.with_tip(tip)):
                 offered.add(key)

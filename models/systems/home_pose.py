@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import casadi as ca
@@ -78,7 +79,7 @@ def chosen_poses(chain: Chain, axes: tuple[Point, ...], pose: dict[str, float]) 
         if score[within].max(initial=0.0) > WORTH * score[allowed].max():
             kept, allowed = [*kept, name], within
     order = np.flatnonzero(allowed)[np.argsort(-score[allowed], kind="stable")]
-    return [ChosenPose(tried[i], tuple(kept)) for i in _apart(chain, tried, order)]
+    return [ChosenPose(tried[i], tuple(kept)) for i in _apart(chain, tried, order.tolist())]
 
 
 def _seen(chain: Chain, axes: tuple[Point, ...], rows: Array) -> Array:
@@ -93,11 +94,11 @@ def _seen(chain: Chain, axes: tuple[Point, ...], rows: Array) -> Array:
     return Rows([q], ca.vertcat(ca.vec(jacobian), lowest, tip[2], tip[0], pointing[2]))(rows)
 
 
-def _apart(chain: Chain, tried: Array, order: Array) -> list[int]:
+def _apart(chain: Chain, tried: Array, order: Sequence[int]) -> list[int]:
     """The first ones of which each differs from those before by `APART` of a joint's travel."""
     low, high = _ends(chain)
     places, found = (tried - low) / (high - low), list[int]()
-    for i in order[:MOST_SEEN].tolist():
+    for i in order[:MOST_SEEN]:
         if all(np.abs(places[i] - places[k]).max() > APART for k in found):
             found.append(i)
     return found[:CANDIDATES]

@@ -117,5 +117,8 @@ def _distances(follower: Trajectory, tracker: Trajectory) -> tuple[float, float,
     """Of the follower while it is free and held, and of the tracker while it is held, [m]."""
     times = np.arange(len(follower.distance)) * DURATION / round(1000 * DURATION)
     free = ~follower.held & ((times < HELD) | (times > LET_GO + SETTLED))
-    held = [float(moved.distance[moved.held].max(initial=0.0)) for moved in (follower, tracker)]
-    return float(follower.distance[free].max(initial=0.0)), *held
+    away, held, torn = (
+        float(moved.distance[when].max(initial=0.0))
+        for moved, when in ((follower, free), (follower, follower.held), (tracker, tracker.held))
+    )
+    return away, held, torn
