@@ -67,8 +67,8 @@ class RobotTips:
 
     def _built(self, wanted: GivenFile, tell: Callable[[Message], None]) -> str:
         """Build a robot; returns its name, or "" if it has been told why it is not possible."""
-        names = {"file": wanted.file.name[:40], "tip": wanted.tip[:40]}
-        tell(Message("robots.reading", names))
+        file, tip = wanted.file.name[:40], wanted.tip[:40]
+        tell(Message("robots.reading", {"file": file, "tip": tip}))
         process = ExportProcess()
         try:
             found = process.call(LONGEST, _read, wanted)
@@ -77,9 +77,9 @@ class RobotTips:
         finally:
             process.stop()
         if isinstance(found, Message):
-            tell(Message("robots.not_built", {**names, "reason": found}))
+            tell(Message("robots.not_built", {"file": file, "tip": tip, "reason": found}))
             return ""
-        tell(Message("robots.shapes", names))
+        tell(Message("robots.shapes", {"file": file, "tip": tip}))
         prepare_shapes(found.source.chain)
         return self._thread.call(partial(add_read, found)).name
 

@@ -115,8 +115,9 @@ def add_masses(
     if light:
         guesses.append(_mass_guess([groups[i].name for i in light], masses, solids, options))
     if points:
-        names = some_names([groups[i].name for i in points])
-        guesses.append(Guess("inertia", Message("robot_file.guessed_inertia", names)))
+        names = [groups[i].name for i in points]
+        message = Message("robot_file.guessed_inertia", some_names(names))
+        guesses.append(Guess("inertia", message))
     return Masses(tuple(guesses), repr(numbers) if numbers else "")
 
 
@@ -235,8 +236,12 @@ def _mass_guess(
 ) -> Guess:
     total = sum(masses.values())
     density = total / sum(solids[i].volume for i in masses)
-    arguments = {**some_names(names), "mass": f"{total:.3g}", "density": f"{density:.0f}"}
-    if any(solid.fault == LIBRARY for solid in solids.values()):
-        return Guess("mass", Message("robot_file.guessed_mass_without", arguments), INSTALL)
-    line = "" if options.mass is not None or options.density is not None else f"--mass {total:.3g}"
-    return Guess("mass", Message("robot_file.guessed_mass", arguments), line)
+    lacks = any(solid.fault == LIBRARY for solid in solids.values())
+    message = Message(
+        "robot_file.guessed_mass_without" if lacks else "robot_file.guessed_mass",
+        {**some_names(names), "mass": f"{total:.3g}", "density": f"{density:.0f}"},
+    )
+    if lacks:
+        return Guess("mass", message, INSTALL)
+    given = options.mass is not None or options.density is not None
+    return Guess("mass", message, "" if given else f"--mass {total:.3g}")

@@ -61,6 +61,15 @@ LARGEST_MASS = 100_000.0  # [kg]
 _STRANGE = re.compile(r"[^a-z0-9]+")
 
 
+POSES_CHOSEN: Mapping[tuple[str, ...], Message] = {
+    ("floor", "ahead"): Message("robot_file.guessed_pose"),
+    ("ahead",): Message("robot_file.guessed_pose_floor"),
+    ("floor",): Message("robot_file.guessed_pose_ahead"),
+    (): Message("robot_file.guessed_pose_floor_ahead"),
+}
+"""What is said of a chosen pose, by the rules of `chosen_poses` that it keeps."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class RobotFile:
     """A robot from a file.
@@ -133,10 +142,12 @@ def _check(options: Options) -> None:
     if not 0 <= options.armature <= LARGEST_ARMATURE:
         most = f"{LARGEST_ARMATURE:g}"
         raise CodedError("robot_file.armature", value=f"{options.armature:g}", most=most)
-    for name, most in (("density", LARGEST_DENSITY), ("mass", LARGEST_MASS)):
-        value = getattr(options, name)
-        if value is not None and not 0 < value <= most:
-            raise CodedError(f"robot_file.{name}_range", value=f"{value:g}", most=f"{most:g}")
+    density, mass = options.density, options.mass
+    if density is not None and not 0 < density <= LARGEST_DENSITY:
+        most = f"{LARGEST_DENSITY:g}"
+        raise CodedError("robot_file.density_range", value=f"{density:g}", most=most)
+    if mass is not None and not 0 < mass <= LARGEST_MASS:
+        raise CodedError("robot_file.mass_range", value=f"{mass:g}", most=f"{LARGEST_MASS:g}")
 
 
 def _made(file: Path, name: str, read: FileChain, pose: Mapping[str, float]) -> RobotFile:
@@ -217,10 +228,9 @@ def _pose_guess(chain: Chain, home: ChosenPose, pose: Mapping[str, float]) -> It
     free = [i for i, joint in enumerate(chain.joints) if joint.name not in pose]
     if not free:
         return
-    broken = "_".join(rule for rule in RULES if rule not in home.kept)
-    code = f"robot_file.guessed_pose_{broken}" if broken else "robot_file.guessed_pose"
+    message = POSES_CHOSEN[home.kept]
     values = [f"{chain.joints[i].name}={home.q[i]:.4g}" for i in free]
-    yield Guess("pose", Message(code), " ".join(f"--pose {shlex.quote(each)}" for each in values))
+    yield Guess("pose", message, " ".join(f"--pose {shlex.quote(each)}" for each in values))
 
 
 def _effort_guess(chain: Chain) -> Iterator[Guess]:

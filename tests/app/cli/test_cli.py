@@ -401,7 +401,7 @@ def test_an_existing_file_is_kept_when_a_run_fails(
     file.write_text("precious")
     assert run_command([*SHORT, "--set", "K1=nan", "--csv", str(file)]) == 2
 
-    def fail(*_: object) -> None:
+    def fail(*_: object, **__: object) -> None:
         file.parent.joinpath("seen").write_text("the failure came while writing")
         raise OSError("no space left on device")
 

@@ -146,6 +146,7 @@ COMMANDS: dict[type, st.SearchStrategy[Any]] = {
     c.SwingWall: st.builds(c.SwingWall, st.integers(-2, 2), points(1)),
     c.NudgeWall: st.builds(c.NudgeWall, WILD, WILD, WILD),
     c.MoveStart: st.builds(c.MoveStart, points(1)),
+    c.DragJoint: st.builds(c.DragJoint, INDICES, points(1)),
     c.StartOnPath: st.builds(c.StartOnPath),
     c.ChoosePath: st.builds(
         c.ChoosePath, st.sampled_from([*new_lab().simulation.presets, "", "hexagon"])
