@@ -79,7 +79,7 @@ class RobotTips:
         if isinstance(found, Message):
             tell(Message("robots.not_built", {"file": file, "tip": tip, "reason": found}))
             return ""
-        tell(Message("robots.shapes", {"file": file, "tip": tip}))
+        tell(Message("robots.shapes", {"tip": tip}))
         prepare_shapes(found.source.chain)
         return self._thread.call(partial(add_read, found)).name
 

@@ -239,8 +239,8 @@ def _effort_guess(chain: Chain) -> Iterator[Guess]:
     if len(names) == chain.n:
         yield Guess("effort", Message("robot_file.guessed_efforts"))
     elif names:
-        joints = {"joints": ", ".join(names)}
-        yield Guess("effort", Message("robot_file.guessed_effort", joints))
+        message = Message("robot_file.guessed_effort", {"joints": ", ".join(names)})
+        yield Guess("effort", message)
 
 
 def _slope(chain: Chain, axes: tuple[Point, ...], q: Array) -> Array:
