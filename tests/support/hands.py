@@ -149,15 +149,19 @@ class Slide:
         slider.scroll_into_view_if_needed()
         bar = hands.box(slider)
         low, high, y = bar["x"], bar["x"] + bar["width"], bar["y"] + bar["height"] / 2
+        tried: list[tuple[float, float]] = []  # distance from the number, and place
         with hands.dragging(((low + high) / 2, y), in_scene=False) as move:
             while high - low > 0.5:  # px
                 middle = (low + high) / 2
                 move((middle, y))
                 hands.tab.page.evaluate(THREE_FRAMES)  # a finger's moves wait for a picture
-                if hands.tab.value(self.label) < self.value:
+                found = hands.tab.value(self.label)
+                tried.append((abs(found - self.value), middle))
+                if found < self.value:
                     low = middle
                 else:
                     high = middle
+            move((min(tried)[1], y))
             wait_for(lambda: hands.has(self.label, self.value, self.near))
 
 
