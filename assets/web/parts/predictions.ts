@@ -12,6 +12,8 @@ import type { Span } from "./curves"
 import { Drawing } from "./drawing"
 import { radiusOf } from "./strip"
 
+const CALM = matchMedia("(prefers-reduced-motion: reduce)")
+
 export interface Prediction {
     /** Number of the step that asks, and of the block in it. */
     step: number
@@ -56,10 +58,11 @@ export function predict(page: PageData, prediction: Prediction, student: Student
     let answer: Answer = {}
     const answers = () => {
         commit.disabled = answer.times === undefined && answer.option === undefined
-        const before = element.offsetHeight
+        const { top } = element.getBoundingClientRect(), stuck = getComputedStyle(element).position === "sticky"
         element.classList.toggle("answered", !commit.disabled) // how sure, and why, is asked then
-        if (getComputedStyle(element).position === "sticky") // what was read above it is still seen
-            element.closest(".words")!.scrollTop += element.offsetHeight - before
+        if (!stuck || commit.disabled) return
+        element.closest(".words")!.scrollTop += element.getBoundingClientRect().top - top // it stays below the mouse, then glides
+        asked.scrollIntoView({ block: "nearest", behavior: CALM.matches ? "instant" : "smooth" })
     }
     let board: HTMLElement | null = null
     let committed = (_: Answer) => {}
