@@ -63,7 +63,7 @@ def test_a_committed_choice_is_locked_and_judged_when_its_run_is_over(
     wrong = page.get_by_role("radio", name=re.compile("A few millimetres"))
     wrong.click()
     text, card = page.get_by_text("We make the spring"), page.locator(".step.open .asked")
-    expect(page.get_by_label("Why?")).to_be_in_viewport(ratio=1)
+    expect(page.get_by_label("Why?")).to_be_in_viewport(ratio=0.95)
     above, below = text.bounding_box(), card.bounding_box()
     assert above is not None and below is not None
     assert above["y"] + above["height"] <= below["y"]  # it does not hide what it asks about
