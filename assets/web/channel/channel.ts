@@ -414,15 +414,15 @@ export class RemoteEngine implements Engine {
     private frame({ rows, running, past, anew, fields, straight }: FrameMessage): void {
         const { samples } = this
         const { held, pulled } = this.flags
-        const late = rows.length - (straight?.length ?? 0) // rows before those with a straight link
-        const fresh = rows.map((row, i) => this.sample(row, straight?.[i - late] ?? null))
-        if (!fresh.length) return
-        let gone = 0
+        if (!rows.length) return
         if (anew) {
             samples.length = 0
             let first = 0
             this.fields = new Map((fields ?? []).map(([name, size, unit]) => [name, { first: (first += size) - size, size, unit }]))
         }
+        const late = rows.length - (straight?.length ?? 0) // rows before those with a straight link
+        const fresh = rows.map((row, i) => this.sample(row, straight?.[i - late] ?? null))
+        let gone = 0
         while (samples.length && samples[samples.length - 1]!.time >= fresh[0]!.time) {
             samples.pop()
             gone++

@@ -49,6 +49,23 @@ test("samples replace those from their time on, and are what was sent", () => {
     assert.deepEqual([engine.since(-1).length, engine.present.time], [0, 0.005])
 })
 
+test("what a page plots is told of the past, too, whatever was plotted before", () => {
+    const { engine, say } = heard(), draw = chance(3)
+    for (const message of [STATE, PATH, FRAME]) say(message)
+    for (let round = 0; round < 30; round++) {
+        const names = ["xi", "xi_rate", "u"].filter(() => draw() < 0.5)
+        const sizes = names.map(() => 1 + Math.floor(3 * draw())), total = sizes.reduce((sum, size) => sum + size, 0)
+        const numbers = [0, 1, 2].map(() => Array.from({ length: 2 * total }, () => Math.round(1000 * draw())))
+        say({ ...FRAME, rows: numbers.map((more, i) => [...row(16 * i), ...more]), fields: names.map((name, i) => [name, sizes[i], 1000]) })
+        const samples = [...engine.since(-1), engine.present]
+        assert.deepEqual(samples.map(({ sides }) => sides.map(side => side.tip)), numbers.map(() => [[0.01, 0.02], [0.03, 0.04]]))
+        samples.forEach((sample, i) => [0, 1].forEach(side => {
+            const told = names.flatMap(name => engine.field(sample, side, name) ?? [])
+            assert.deepEqual(told, numbers[i]!.slice(side * total, (side + 1) * total).map(each => each / 1000))
+        }))
+    }
+})
+
 test("a state has what it had, but for what is said of it anew", () => {
     const { engine, say } = heard()
     say(STATE)
