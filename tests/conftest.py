@@ -11,6 +11,7 @@ from hypothesis import settings
 
 from onpath.models.control.laws.registry import LAWS, OWN_GAINS
 from onpath.models.paths.curves import HARMONICS, Curve, fourier
+from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.five_bar import five_bar, load_links
 from tests.support.rig import Rig
 
@@ -35,11 +36,11 @@ def pytest_sessionfinish(session: pytest.Session) -> None:
 
 
 @pytest.fixture(scope="module", autouse=True)
-def only_our_laws() -> Iterator[None]:
-    """Remove the laws that a file of tests has added: tests over all laws mean OnPath's own."""
-    laws, gains = set(LAWS), set(OWN_GAINS)
+def only_our_own() -> Iterator[None]:
+    """Remove laws and robots that a file of tests has added: tests over all mean OnPath's own."""
+    laws, gains, robots = set(LAWS), set(OWN_GAINS), set(ROBOTS)
     yield
-    for known, before in ((LAWS, laws), (OWN_GAINS, gains)):
+    for known, before in ((LAWS, laws), (OWN_GAINS, gains), (ROBOTS, robots)):
         for name in known.keys() - before:
             known.pop(name)
 

@@ -77,8 +77,8 @@ INTRUDERS = (
     "<a/>",
 )
 
-WHOLE = ("which_tip", "no_tip", "no_joint", "few_joints", "no_pose", "singular", "circle")
-WHOLE += ("massless", "damping", "pose_outside", "pose")
+WHOLE = ("no_tip", "no_joint", "no_pose", "singular", "circle", "massless", "pose_outside", "pose")
+WHOLE += ("single", "two_across", "no_joints", "hand")
 """Refusals of a robot as a whole, which belong to no line."""
 
 

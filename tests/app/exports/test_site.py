@@ -152,7 +152,7 @@ def _reached(*files: Path) -> set[Path]:
 
 
 def _asked(files: set[Path]) -> set[str]:
-    says = re.compile(r"(said|tell)\(")
+    says = re.compile(r"(phrase|tell)\(")
     lines = [line for file in files for line in file.read_text("utf-8").splitlines()]
     return {key for line in lines if says.search(line) for key in _keys(line)}
 

@@ -201,5 +201,5 @@ def test_no_scene_is_built_for_a_client_that_leaves_while_waiting(
     for comer in inside:
         comer.student.__exit__()
     wait_for_views(server, 0)
-    assert all(lab.display is None for lab in server.thread.labs)
+    wait_for(lambda: all(lab.display is None for lab in server.thread.labs), 60)
     assert not server.registry.held()

@@ -426,7 +426,8 @@ def test_an_error_is_told_by_its_code_whatever_its_english_is(language: str) -> 
         error = CodedError(code, **dict.fromkeys(given, "7"))
         own = Words(language).sentence(error)
         assert own == error.message.text(language) and "{" not in own
-        assert own != str(error) == ENGLISH.sentence(error) == error.message.text(), code
+        assert str(error) == ENGLISH.sentence(error) == error.message.text(), code
+        assert own != str(error) or not re.search("[a-z]", own), code  # a list has no words
 
 
 def test_a_changed_english_text_keeps_its_translation(monkeypatch: pytest.MonkeyPatch) -> None:
