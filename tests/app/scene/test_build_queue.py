@@ -87,7 +87,7 @@ def wait_for_clients(server: LabServer, count: int) -> None:
 
 
 def wait_for_queue(server: LabServer, count: int) -> None:
-    """Wait until so many clients wait in the queue, where a page may ask for its scene twice."""
+    """Wait until so many wait in the queue; both a page's client and its lab ask for its scene."""
     wait_for(lambda: server._newcomers._pool._work_queue.qsize() >= count, 60)
 
 
