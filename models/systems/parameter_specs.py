@@ -236,8 +236,10 @@ def checked(spec: Spec, name: str, value: Any) -> Any:
         ValueError: not a finite number in range, or not one of the options.
     """
     if spec.options:
+        whole = isinstance(value, float) and value.is_integer()  # as a browser sends a whole number
+        text = str(int(value) if whole else value)
         for option in spec.options:
-            if str(option) == str(value) or _SWITCHED.get(str(value)) is option:
+            if str(option) == text or _SWITCHED.get(text) is option:
                 return option
         options = ", ".join(str(option) for option in spec.options)
         raise CodedError("error.value_not_an_option", name=name, value=repr(value), options=options)

@@ -18,6 +18,8 @@ from onpath.app.channel.form_messages import (
     SetField,
     ValuesMessage,
 )
+from onpath.app.channel.messages import encoded
+from onpath.app.channel.reading import read_message
 from onpath.app.lab.commands import AddPoint, ChooseLaw, ChoosePath, Redo, TypeLaw, Undo
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
@@ -29,13 +31,14 @@ from onpath.app.view.laws import suitable
 from onpath.lessons.action_schema import StepSetup
 from onpath.lessons.course import NO_LESSONS
 from onpath.lessons.words import ENGLISH, Words
-from onpath.models.closed_loop.lab_settings import SETTINGS
+from onpath.models.closed_loop.lab_settings import SETTINGS, lab_specs
 from onpath.models.control.laws.own import OWN, PATH_FOLLOWING
 from onpath.models.control.laws.registry import LAWS, OWN_GAINS
 from onpath.models.control.settable import specs
 from onpath.models.control.sides import DEFAULT_LAWS, LEFT, RIGHT, SIDES
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.parameter_specs import checked
 from tests.support.lab import FRAME, do, loop_cache, new_lab, run
 
 
@@ -187,6 +190,17 @@ def test_every_number_is_at_first_within_the_ends_of_its_slider(robot: str) -> N
             value = values[field.name]
             assert isinstance(value, float | int)
             assert field.low <= value <= field.high, field.name
+
+
+@pytest.mark.parametrize("robot", ROBOTS)
+def test_every_option_of_a_setting_is_taken_as_a_browser_sends_it(robot: str) -> None:
+    snapshot = take_page_snapshot(Lab(loop_cache(), ROBOTS[robot]), 1.0)
+    known = lab_specs(ROBOTS[robot].parameters)
+    for field in fields(form_of(snapshot, None, ENGLISH)):
+        for option in field.options if field.name in known else ():
+            told = read_message(encoded(SetField(field.name, option.value, 1)).decode())
+            assert isinstance(told, SetField)
+            assert checked(known[field.name], field.name, told.value) == option.value
 
 
 def test_a_path_of_ones_own_is_an_option_while_it_is_followed() -> None:

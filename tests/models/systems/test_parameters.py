@@ -63,6 +63,20 @@ def test_choices_are_taken_as_text_and_come_back_as_they_are(name: str) -> None:
         assert taken == option and type(taken) is type(option)
 
 
+@given(st.sampled_from(SPECS["control_rate"].options) | st.integers(-3000, 3000))
+def test_a_choice_of_numbers_takes_them_with_a_point_and_none_between(value: int) -> None:
+    name = "control_rate"
+    if value in SPECS[name].options:
+        taken = value_of(changed(FiveBarParameters(), name, float(value)), name)
+        assert taken == value and type(taken) is int
+    else:
+        with pytest.raises(ValueError, match=name):
+            changed(FiveBarParameters(), name, float(value))
+    for between in (value + 0.5, math.nextafter(value, math.inf)):
+        with pytest.raises(ValueError, match=name):
+            changed(FiveBarParameters(), name, between)
+
+
 def test_one_value_changes_and_the_old_record_stays() -> None:
     before = FiveBarParameters()
     after = changed(before, "K1", "100")
