@@ -25,7 +25,7 @@ type Complex = readonly [number, number]
 type Polynomial = readonly number[]
 
 const LEAST_DECAY = 1e-3, NO_OSCILLATION = 0.995 // [1/s] and a damping ratio, as in models/control/poles.py
-const STEPS = 100 // of the iteration to the roots; a double root takes about 30
+const STEPS = 100, NEAR = 1e-7 // most steps of the iteration to the roots, and how far they may move in its last one
 const ROUNDING = 1e-12 // imaginary parts of z below this are rounding errors
 const SETTLING = new Set(["no_overshoot", "no_oscillation", "damping"])
 
@@ -90,19 +90,25 @@ function characteristic(t: number, h: number, delay: number, [first, second, thi
 }
 
 function times(a: Polynomial, b: Polynomial): Polynomial {
-    const product = Array<number>(a.length + b.length - 1).fill(0)
-    a.forEach((x, i) => b.forEach((y, j) => (product[i + j]! += x * y)))
-    return product
+    const found = Array<number>(a.length + b.length - 1).fill(0)
+    a.forEach((x, i) => b.forEach((y, j) => (found[i + j]! += x * y)))
+    return found
 }
 
 const sum = (...each: Polynomial[]): Polynomial =>
     Array.from({ length: Math.max(...each.map(p => p.length)) }, (_, i) => each.reduce((total, p) => total + (p[i] ?? 0), 0))
 
-/** The roots of a polynomial whose leading coefficient is 1, by the method of Ehrlich and Aberth. */
+/** The roots of a polynomial whose leading coefficient is 1, by the method of Ehrlich and Aberth, until rounding moves them. */
 function roots(polynomial: Polynomial): Complex[] {
     const size = polynomial.length - 1, angle = (i: number): number => (2 * Math.PI * (i + 0.3)) / size
-    const found = Array.from({ length: size }, (_, i): Complex => [-0.5 + Math.cos(angle(i)), Math.sin(angle(i))])
-    for (let step = 0; step < STEPS; step++) found.splice(0, size, ...found.map((w, i) => better(found, w, i, polynomial)))
+    let found = Array.from({ length: size }, (_, i): Complex => [-0.5 + Math.cos(angle(i)), Math.sin(angle(i))])
+    for (let step = 0, before = Infinity; step < STEPS; step++) {
+        const next = found.map((w, i) => better(found, w, i, polynomial))
+        const moved = Math.max(...next.map((w, i) => Math.hypot(...minus(w, found[i]!))))
+        found = next
+        if (moved < NEAR && moved >= before) break
+        before = moved
+    }
     return found
 }
 
