@@ -110,7 +110,7 @@ def drawings_data(
     if "labels" in drawn:
         data["labels"] = _labels(robot)
     if {"tube", "grid"} & {*drawn}:
-        data["tubes"] = [_tube(figure, curve, words) for curve in figure.paths.values()]
+        data["tubes"] = [_tube(figure, curve) for curve in figure.paths.values()]
     if "rank" in drawn:
         stage = stage_of(robot)
         picture = rank_picture(stage, robot, figure.parameters)
@@ -137,19 +137,13 @@ def _labels(robot: Robot) -> dict[str, Any]:
     }
 
 
-def _tube(figure: FigureChoice, curve: Curve, words: Words) -> dict[str, Any]:
+def _tube(figure: FigureChoice, curve: Curve) -> dict[str, Any]:
     sizes = tube_sizes(raised(curve, figure.parameters))
-    said = words("show.width_none")
-    if np.isfinite(sizes.width):
-        said = words("show.width", width=f"{1e3 * sizes.width:.1f}")
-    steps = words("show.steps", xi=f"{1e3 * sizes.step:g}", theta=f"{360 / LINES:g}")
     return {
         "shown": sizes.shown,
         "across": [*sizes.across.tolist()],
         "along": ALONG,
         "lines": LINES,
-        "text": said,
-        "steps": steps,
     }
 
 

@@ -63,7 +63,7 @@ export interface DrawingsData {
     marks: { at: Point; from?: Point; text: string }[]
     labels?: { names: string[]; points: number; axes: [Point, Point][]; axisNames: { text: string; place: Point }[] }
     /** Of each path. */
-    tubes?: { shown: number; across: number[]; along: number; lines: number; text: string; steps: string }[]
+    tubes?: { shown: number; across: number[]; along: number; lines: number }[]
     rank?: PlaneImage
     zone?: PlaneImage
 }

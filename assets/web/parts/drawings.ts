@@ -53,13 +53,6 @@ export class Drawings {
         for (const mark of data.marks) this.mark(ink, mark, scene)
     }
 
-    /** What the tube and the lines in it mean, in words; empty if they are not drawn. */
-    phrase({ number, path }: Scene): string {
-        const { shown, data } = this, tube = data.tubes?.[number]
-        if (!tube || path.edited || !(shown.has("tube") || shown.has("grid"))) return ""
-        return shown.has("grid") ? `${tube.text} ${tube.steps}` : tube.text
-    }
-
     private labels(ink: CanvasRenderingContext2D, { names, points, axes, axisNames }: NonNullable<DrawingsData["labels"]>, scene: Scene): void {
         const { pixel, side } = scene, colours = tones()
         for (const [from, to] of axes) arrow(ink, pixel(from), pixel(to), colours.ink, 1.5)
