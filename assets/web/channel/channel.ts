@@ -154,11 +154,11 @@ export class RemoteEngine implements Engine {
     private plotted: readonly string[] = [] // fields that are asked for
     private running = false
     private past: number | null = null
-    private looked: { at: number | null; until: number } | null = null
+    private sought: { at: number | null; until: number } | null = null
     private pointed = "" // symbol of a lesson's text
     private symbol: Light["symbol"] = "" // whose lines are asked for
     private symbolLines: { symbol: string; lines: readonly Vector[][] } = { symbol: "", lines: [] }
-    private sending = 0 // timer of an instant to be looked at
+    private sending = 0 // timer until the lab is told of it
     private socket: WebSocket | null = null
     private hasLab = false // whether this connection has had a lab
     private sees = false
@@ -231,8 +231,8 @@ export class RemoteEngine implements Engine {
 
     get state(): State {
         const { held, pulled } = this.flags
-        const looked = this.looked && performance.now() < this.looked.until ? this.looked : null
-        const past = looked ? looked.at : this.past
+        const sought = this.sought && performance.now() < this.sought.until ? this.sought : null
+        const past = sought ? sought.at : this.past
         return { running: this.running && past === null, rate: this.lab?.rate ?? 1, held, pulled, past, branches: this.lab?.own ?? false, frozen: this.lab?.frozen ?? "" }
     }
 
@@ -268,7 +268,7 @@ export class RemoteEngine implements Engine {
         if (!this.lab?.own) return
         if (act.do === "seek") this.seek(act.at)
         else {
-            this.looked = null
+            this.sought = null
             if (act.do === "hold") this.send({ do: "Hold", on: act.on })
             else if (act.do === "run") this.send({ do: "SetRunning", running: act.on })
             else if (act.do === "rate") this.send({ do: "Set", name: "rate", value: act.rate })
@@ -321,12 +321,12 @@ export class RemoteEngine implements Engine {
     /** Show an instant at once, and let the lab show it soon. */
     private seek(at: number | null): void {
         const sample = at === null ? undefined : sampleAt(this.samples, at)
-        this.looked = { at: sample && sample !== this.present ? sample.time : null, until: performance.now() + SETTLES }
+        this.sought = { at: sample && sample !== this.present ? sample.time : null, until: performance.now() + SETTLES }
         this.sending ||= window.setTimeout(() => {
             this.sending = 0
-            if (!this.looked) return
-            this.looked.until = performance.now() + SETTLES
-            this.send({ do: "LookAt", ago: this.looked.at === null ? 0 : this.present.time - this.looked.at })
+            if (!this.sought) return
+            this.sought.until = performance.now() + SETTLES
+            this.send({ do: "LookAt", ago: this.sought.at === null ? 0 : this.present.time - this.sought.at })
             setTimeout(() => this.tell("state"), SETTLES + 1)
         }, HANDED)
         this.tell("state")

@@ -17,7 +17,7 @@ const SLOW = 3000, MUCH = 0.75 // [ms] without a message, or with less than this
 const SLEPT = 20_000, WAKES = 10_000 // [ms] between two checks of a page that slept; without a message after that
 const DEAD = 75_000, BUILDS = 150_000 // [ms] without a message, after which a connection counts as lost: with a lab, and without
 const MISSED = 10_000 // [ms] for which the lab may not know of a picture that was there
-const RELOADED = "onpath-reloaded" // key in the session: the version of the lab for which the page was loaded again
+const RELOADED = "onpath-reloaded" // key in the session: when the page was loaded again for another version of the lab
 const ORIGIN = "Onpath-Origin" // asks whether pages of an origin may connect; see request_filter.py
 
 /** What is going on; connect-… of the catalogues. */
@@ -37,7 +37,7 @@ export class Connection {
     private quiet = 0 // [ms] of checks without a message
     private late = 0 // [ms] of checks at which the lab is too slow
     private slept = false
-    private looked = Date.now() // a page's own time may stand still while it sleeps
+    private checked = Date.now() // a page's own time may stand still while it sleeps
     private heard = 0
     private readonly picture = new PictureLink()
 
@@ -54,8 +54,8 @@ export class Connection {
     /** Open what is missing, and say what is; called repeatedly.
      * @param face whether our part of the page is shown */
     check(face: boolean): void {
-        const now = performance.now(), date = Date.now(), gap = Math.max(date - this.looked, 0), { engine, picture } = this
-        this.looked = date
+        const now = performance.now(), date = Date.now(), gap = Math.max(date - this.checked, 0), { engine, picture } = this
+        this.checked = date
         if (!this.final) engine.open()
         const isThere = engine.connected && face
         if (isThere) this.wasThere = true

@@ -37,7 +37,7 @@ export class Figure {
     private pending: (() => void) | null = null // a drag to be handled before the next picture
     private stale = true
     private kind = ""
-    private said = 0
+    private announced = 0
 
     /** `ended` stops the figure when a page puts another one in its place; in a lesson, one cannot go on from the past,
      * and keys pull as in the lab. */
@@ -152,9 +152,9 @@ export class Figure {
         const line = `${spoken(this.simulation, captions)} ${note}`.trim()
         const kind = withoutNumbers(line)
         const now = performance.now()
-        if (line === this.live.textContent || (kind === this.kind && now < this.said + SILENCE)) return
+        if (line === this.live.textContent || (kind === this.kind && now < this.announced + SILENCE)) return
         this.kind = kind
-        this.said = now
+        this.announced = now
         this.live.textContent = line
     }
 

@@ -25,7 +25,7 @@ import { Transport } from "../parts/transport"
 import { Voice } from "../parts/voice"
 import { Shell } from "./shell"
 
-const LOOK = 250 // [ms] between checks of what viser has put into the page
+const CHECKED = 250 // [ms] between checks of what viser has put into the page
 const RATES = [0.125, 0.25, 0.5, 1, 2, 4]
 const RESTS = 300 // [ms] for which the canvas keeps its size, until the lab is told of it
 const NUMBERS = 100 // [ms] between changes of the large numbers
@@ -268,7 +268,7 @@ function showLab(): void {
         }
         connection.check(face !== null)
     }
-    setInterval(follow, LOOK)
+    setInterval(follow, CHECKED)
     engine.on(change => { if (change === "words" || !face) follow() })
     follow()
     Object.assign(window, { onpathLab: engine }) // for tests

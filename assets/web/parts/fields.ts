@@ -238,7 +238,7 @@ class NumberRow extends FieldRow {
         this.typing = true
     }
 
-    /** From now on the box has what is typed, or the value again. */
+    /** From now on the box shows what is typed, or the value again. */
     private type(on: boolean): void {
         if (on || this.typing) keepDraft(this.draft, on ? { text: this.box.value } : null)
         this.typing = on

@@ -61,7 +61,7 @@ export function predict(page: PageData, prediction: Prediction, student: Student
         const { top } = element.getBoundingClientRect(), stuck = getComputedStyle(element).position === "sticky"
         element.classList.toggle("answered", !commit.disabled) // how sure, and why, is asked then
         if (!stuck || commit.disabled) return
-        element.closest(".words")!.scrollTop += element.getBoundingClientRect().top - top // it stays below the mouse, then glides
+        element.closest(".words")!.scrollTop += element.getBoundingClientRect().top - top // it stays under the mouse, then glides
         asked.scrollIntoView({ block: "nearest", behavior: CALM.matches ? "instant" : "smooth" })
     }
     let board: HTMLElement | null = null

@@ -47,7 +47,7 @@ export class Side {
     private readonly grabbed = this.kernels.room(this.sizes.p) // where the tip was when a pull began
     private row = this.log // the last one
     private readonly past = this.kernels.room(this.sizes.log)
-    private looked = false // whether the row of a past instant is shown
+    private isPast = false // whether the row of a past instant is shown
 
     constructor(
         readonly data: SideData,
@@ -68,7 +68,7 @@ export class Side {
         kernels.numbers.set(path.data.settings, this.settings)
         this.configure(this.variant, this.numbers)
         if (path.edited) this.call(`begin${this.law}`, path.table, state, state)
-        this.held = this.looked = false
+        this.held = this.isPast = false
         this.pulledBy = this.beyond = null
         this.stopped = this.ticks = this.most = 0
         this.seeStart()
@@ -128,7 +128,7 @@ export class Side {
 
     /** Draw a past instant, or the present one. */
     show(kept: Kept | null): void {
-        this.looked = kept !== null
+        this.isPast = kept !== null
         if (kept) this.kernels.numbers.set(kept.row, this.past)
     }
 
@@ -136,7 +136,7 @@ export class Side {
     goOn({ row, state, law, ticks }: Kept): void {
         this.kernels.numbers.set(state, this.state)
         this.kernels.numbers.set(row, this.log)
-        Object.assign(this, { law, ticks, row: this.log, stopped: 0, looked: false })
+        Object.assign(this, { law, ticks, row: this.log, stopped: 0, isPast: false })
         this.hold(false)
         this.pull(null)
         this.measure()
@@ -266,7 +266,7 @@ export class Side {
     }
 
     private readonly seen = (name: keyof FigureData["log"]): number =>
-        (this.looked ? this.past : this.row) + this.figure.log[name][0]
+        (this.isPast ? this.past : this.row) + this.figure.log[name][0]
     private readonly field = (name: keyof FigureData["log"]): number => this.row + this.figure.log[name][0]
     private readonly call = (name: string, ...places: number[]) => this.kernels.call(this.name(name), ...places)
     private get loop(): string { return this.name(`loop${this.law}${this.variant ? `v${this.variant}` : ""}`) }

@@ -5,7 +5,7 @@ import { test } from "node:test"
 import type { RemoteEngine } from "../../../../assets/web/channel/channel"
 import { chance } from "../random"
 
-const LOOKS = 100 // [ms]
+const CHECKED = 100 // [ms] between checks
 const PATIENT = 37_000 // [ms], at most, until a picture that was lost is asked for again, with what chance adds
 let date = 1.7e12
 Date.now = () => date
@@ -31,32 +31,32 @@ Object.assign(globalThis, {
 const { Connection } = await import("../../../../assets/web/channel/connection")
 
 /** A page with a lab whose websocket is open, and its worker. */
-function opened(): { look: (ms: number, jump?: number) => void; worker: FakeWorker; engine: { heard: number; closed: number } } {
+function opened(): { wait: (ms: number, jump?: number) => void; worker: FakeWorker; engine: { heard: number; closed: number } } {
     const engine = {
         connected: true, isOpen: true, outdated: false, refused: 0, waits: "", page: "a", heard: 0, closed: 0, state: { running: true },
         lab: { rate: 1, achieved: 1, scene: 0 }, open: () => {}, close: () => engine.closed++,
     }
     const connection = new Connection(engine as unknown as RemoteEngine)
     new Worker("viser.js").postMessage({ type: "set_server" }) // oxlint-disable-line unicorn/require-post-message-target-origin
-    const look = (ms: number, jump = 0) => {
+    const wait = (ms: number, jump = 0) => {
         date += jump
-        for (let passed = 0; passed < ms; passed += LOOKS) {
-            date += LOOKS
-            pass(LOOKS)
+        for (let passed = 0; passed < ms; passed += CHECKED) {
+            date += CHECKED
+            pass(CHECKED)
             connection.check(true)
         }
     }
-    return { look, worker: FakeWorker.now, engine }
+    return { wait, worker: FakeWorker.now, engine }
 }
 
 test("a picture that is lost is asked for again, whatever becomes of the clock", () => {
     const draw = chance(3)
-    const { look, worker, engine } = opened()
+    const { wait, worker, engine } = opened()
     for (let round = 0; round < 30; round++) {
         const before = worker.opened, began = time()
         while (worker.opened === before) {
             engine.heard++
-            look(LOOKS, draw() < 0.1 ? (draw() - 0.5) * 1e9 : 0)
+            wait(CHECKED, draw() < 0.1 ? (draw() - 0.5) * 1e9 : 0)
             assert.ok(time() - began < PATIENT, `round ${round}`)
         }
         worker.tell("closed")
@@ -65,13 +65,13 @@ test("a picture that is lost is asked for again, whatever becomes of the clock",
 
 test("a connection that died is opened anew, whatever becomes of the clock", () => {
     const draw = chance(5)
-    const { look, engine } = opened()
+    const { wait, engine } = opened()
     for (let round = 0; round < 20; round++) {
         engine.heard++
-        look(LOOKS)
+        wait(CHECKED)
         const before = engine.closed
         for (let waited = 0; engine.closed === before; waited += 1000) {
-            look(1000, draw() < 0.2 ? (draw() - 0.7) * 1e8 : 0)
+            wait(1000, draw() < 0.2 ? (draw() - 0.7) * 1e8 : 0)
             assert.ok(waited < 80_000, `round ${round}`)
         }
     }
