@@ -358,8 +358,6 @@ class-forgotten =
         [one] 1 Labor wurde gelöscht.
        *[other] { $count } Labore wurden gelöscht.
     }
-question-yes = Ja
-question-no = Nein
 class-picked = Gezeigte Skizzen
 class-picked_hint = Nummern wie 2, 5; leer für alle
 class-whereabouts = { $ended } am Ende der Lektion, { $elsewhere } woanders
@@ -1366,6 +1364,7 @@ error-cannot_follow = { $robot } kann dieser Bahn nicht folgen: { $reasons }
 
 error-start_out_of_reach = dort kann der Roboter nicht starten: Der Ort ist außer Reichweite oder zu nah an einer singulären Stellung
 error-start_not_possible = so kann der Roboter nicht starten: { $reason }
+error-no_such_joint = dieser Roboter hat kein solches Gelenk
 error-set_by_process = das kann nur ändern, wer diesen Server betreibt
 error-not_a_number = das ist keine Zahl
 error-not_a_point = das ist kein Punkt
@@ -1771,31 +1770,14 @@ robot_file-mujoco_ended = MuJoCo ist beim Lesen von { $file } ausgefallen: Es is
 robot_file-mujoco_warns = MuJoCo warnt: { $reason }
 robot_file-same_name = { $name } heißt schon ein anderer Roboter
 robot_file-absent_robot = diese Einstellung ist für den Roboter { $name } aus einer Datei: Starten Sie das Labor mit { $line } und mit den Optionen, mit denen es dort gestartet wurde
-robot_file-still = Gelenke ohne Weg zwischen ihren Grenzen bleiben stehen: { $names }{ $more ->
-        [0] {""}
-       *[other] {" "}und { $more } weitere
-    }
-robot_file-not_drawn = nicht gezeichnet, weil es im Ordner oder Paket des Roboters keine solche .stl-, .obj- oder .dae-Datei bis 20 MB gibt oder die Größe fehlt: { $names }{ $more ->
-        [0] {""}
-       *[other] {" "}und { $more } weitere
-    }
+robot_file-and_more = { $names } und { $more } weitere
+robot_file-still = Gelenke ohne Weg zwischen ihren Grenzen bleiben stehen: { $names }
+robot_file-not_drawn = nicht gezeichnet, weil es im Ordner oder Paket des Roboters keine solche .stl-, .obj- oder .dae-Datei bis 20 MB gibt oder die Größe fehlt: { $names }
 robot_file-guessed_package = Netze liegen im Paket { $package }, das nicht bekannt ist
-robot_file-guessed_mass = die Datei nennt für manche Körper keine Masse: Sie gelten als Körper mit { $density } kg/m³, zusammen { $mass } kg: { $names }{ $more ->
-        [0] {""}
-       *[other] {" "}und { $more } weitere
-    }
-robot_file-guessed_mass_without = die Datei nennt für manche Körper keine Masse, und ein Paket, das ihre Netze liest, ist nicht installiert: Sie gelten als Körper mit { $density } kg/m³, zusammen { $mass } kg: { $names }{ $more ->
-        [0] {""}
-       *[other] {" "}und { $more } weitere
-    }
-robot_file-guessed_inertia = die Datei nennt Massen, aber ihre Trägheit nicht: Sie gelten als volle Körper: { $names }{ $more ->
-        [0] {""}
-       *[other] {" "}und { $more } weitere
-    }
-robot_file-repaired = die Trägheit in der Datei hat kein Körper, weil ein Hauptträgheitsmoment die Summe der anderen übersteigt; genommen wird die nächste: { $names }{ $more ->
-        [0] {""}
-       *[other] {" "}und { $more } weitere
-    }
+robot_file-guessed_mass = die Datei nennt für manche Körper keine Masse: Sie gelten als Körper mit { $density } kg/m³, zusammen { $mass } kg: { $names }
+robot_file-guessed_mass_without = die Datei nennt für manche Körper keine Masse, und ein Paket, das ihre Netze liest, ist nicht installiert: Sie gelten als Körper mit { $density } kg/m³, zusammen { $mass } kg: { $names }
+robot_file-guessed_inertia = die Datei nennt Massen, aber ihre Trägheit nicht: Sie gelten als volle Körper: { $names }
+robot_file-repaired = die Trägheit in der Datei hat kein Körper, weil ein Hauptträgheitsmoment die Summe der anderen übersteigt; genommen wird die nächste: { $names }
 robot_file-mass_stated = eine Masse von { $mass } kg ist weniger, als die Datei für manche Körper nennt, { $stated } kg: Geben Sie mit --mass (in Python mass=…) mehr an
 robot_file-density_range = eine Dichte von { $value } kg/m³: erwartet wird mehr als 0, bis { $most }
 robot_file-mass_range = eine Masse von { $value } kg: erwartet wird mehr als 0, bis { $most }
@@ -1806,26 +1788,11 @@ robot_file-xacro_refused = xacro kann { $file } nicht auswerten: { $reason }
 robot_file-xacro_ran = { $file } ist ein Programm: xacro hat seine Ausdrücke ausgeführt, in einem Prozess mit Grenzen
 robot_file-include = { $file } lässt sich nicht einbinden: Es ist keine .xml-Datei im Ordner oder Paket des Roboters (--package NAME=ORDNER; in Python packages=…), oder sie wird zweimal eingebunden
 robot_file-guessed_tip = die Datei sagt nicht, welches Glied die Spitze ist: genommen wird { $tip }
-robot_file-guessed_free = schwebende, ebene und Kugelgelenke bleiben, wo sie sind: { $names }{ $more ->
-        [0] {""}
-       *[other] {" "}und { $more } weitere
-    }
-robot_file-guessed_mimic = Gelenke, die einem anderen folgen, bleiben, wo sie sind: { $names }{ $more ->
-        [0] {""}
-       *[other] {" "}und { $more } weitere
-    }
-robot_file-guessed_many = höchstens 8 Gelenke können sich auf dem Weg zur Spitze bewegen; diese bleiben, wo sie sind: { $names }{ $more ->
-        [0] {""}
-       *[other] {" "}und { $more } weitere
-    }
-robot_file-guessed_off = Gelenke abseits des Wegs zur Spitze bleiben, wo sie sind: { $names }{ $more ->
-        [0] {""}
-       *[other] {" "}und { $more } weitere
-    }
-robot_file-guessed_limits = Gelenke, für die die Datei keine Grenzen nennt oder beide mit 0, gelten als unbegrenzt: { $names }{ $more ->
-        [0] {""}
-       *[other] {" "}und { $more } weitere
-    }
+robot_file-guessed_free = schwebende, ebene und Kugelgelenke bleiben, wo sie sind: { $names }
+robot_file-guessed_mimic = Gelenke, die einem anderen folgen, bleiben, wo sie sind: { $names }
+robot_file-guessed_many = höchstens 8 Gelenke können sich auf dem Weg zur Spitze bewegen; diese bleiben, wo sie sind: { $names }
+robot_file-guessed_off = Gelenke abseits des Wegs zur Spitze bleiben, wo sie sind: { $names }
+robot_file-guessed_limits = Gelenke, für die die Datei keine Grenzen nennt oder beide mit 0, gelten als unbegrenzt: { $names }
 robot_file-mesh_unreadable = das Netz { $mesh } wird weggelassen: { $reason }
 robot_file-refused = <{ $element }> wird nicht gelesen, weil es andere Dateien lesen, Code ausführen oder aus einem Element viele machen kann: Lass es weg, oder lade die Datei in MuJoCo und speichere sie mit einfachen Elementen
 robot_file-unknown = in <{ $parent }> gibt es kein solches Element
@@ -1910,6 +1877,8 @@ arena-written = geschrieben: { $html } und { $csv }
 
 ## Was um die Bühne herum steht: Kopf, Suche, Hilfe, Blätter
 
+question-yes = Ja
+question-no = Nein
 panel-handle = Einstellungen: halbe oder ganze Höhe
 search-title = Suche
 search-hint = Einstellung, Roboter, Regelung, Bahn, Lektion oder Taste
@@ -2017,7 +1986,3 @@ robots-reading = { $file } wird mit dem Endpunkt { $tip } gelesen …
 robots-shapes = Die Netze für den Endpunkt { $tip } werden gelesen …
 robots-not_built = { $file } mit dem Endpunkt { $tip }: { $reason }. Der Roboter bleibt, wie er war
 robots-not_read = sie konnte nicht gelesen werden ({ $reason })
-
-## Joints that are dragged
-
-error-no_such_joint = dieser Roboter hat kein solches Gelenk

@@ -360,8 +360,6 @@ class-forgotten =
         [one] 1 lab was deleted.
        *[other] { $count } labs were deleted.
     }
-question-yes = Yes
-question-no = No
 class-picked = Sketches to show
 class-picked_hint = Numbers such as 2, 5; empty for all
 class-whereabouts = { $ended } at the end of the lesson, { $elsewhere } elsewhere
@@ -966,6 +964,7 @@ error-cannot_follow = { $robot } cannot follow this path: { $reasons }
 
 error-start_out_of_reach = the robot cannot start there: the place is out of its reach, or too near to where it is singular
 error-start_not_possible = the robot cannot start like this: { $reason }
+error-no_such_joint = this robot has no such joint
 error-set_by_process = only those who run this server can change this
 error-not_a_number = that is not a number
 error-not_a_point = that is not a point
@@ -1363,31 +1362,14 @@ robot_file-mujoco_ended = MuJoCo has ended while it read { $file }: it crashed, 
 robot_file-mujoco_warns = MuJoCo warns: { $reason }
 robot_file-same_name = { $name } is the name of another robot
 robot_file-absent_robot = this set-up is for the robot { $name }, which comes from a file: start the lab with { $line }, and with the options that it was started with there
-robot_file-still = joints without travel between their limits stay still: { $names }{ $more ->
-        [0] {""}
-       *[other] {" "}and { $more } more
-    }
-robot_file-not_drawn = not drawn, because there is no such .stl, .obj or .dae file of up to 20 MB in the robot's folder or package, or it has no size: { $names }{ $more ->
-        [0] {""}
-       *[other] {" "}and { $more } more
-    }
+robot_file-and_more = { $names } and { $more } more
+robot_file-still = joints without travel between their limits stay still: { $names }
+robot_file-not_drawn = not drawn, because there is no such .stl, .obj or .dae file of up to 20 MB in the robot's folder or package, or it has no size: { $names }
 robot_file-guessed_package = meshes are in the package { $package }, which is not known
-robot_file-guessed_mass = the file states no masses of some bodies: they are taken for solids of { $density } kg/m³, together { $mass } kg: { $names }{ $more ->
-        [0] {""}
-       *[other] {" "}and { $more } more
-    }
-robot_file-guessed_mass_without = the file states no masses of some bodies, and a package that reads their meshes is not installed: they are taken for solids of { $density } kg/m³, together { $mass } kg: { $names }{ $more ->
-        [0] {""}
-       *[other] {" "}and { $more } more
-    }
-robot_file-guessed_inertia = the file states masses, but no inertia of them: they are taken for solids: { $names }{ $more ->
-        [0] {""}
-       *[other] {" "}and { $more } more
-    }
-robot_file-repaired = no body has the inertia that the file states, because a principal moment exceeds the sum of the others; the nearest one is taken: { $names }{ $more ->
-        [0] {""}
-       *[other] {" "}and { $more } more
-    }
+robot_file-guessed_mass = the file states no masses of some bodies: they are taken for solids of { $density } kg/m³, together { $mass } kg: { $names }
+robot_file-guessed_mass_without = the file states no masses of some bodies, and a package that reads their meshes is not installed: they are taken for solids of { $density } kg/m³, together { $mass } kg: { $names }
+robot_file-guessed_inertia = the file states masses, but no inertia of them: they are taken for solids: { $names }
+robot_file-repaired = no body has the inertia that the file states, because a principal moment exceeds the sum of the others; the nearest one is taken: { $names }
 robot_file-mass_stated = a mass of { $mass } kg is less than what the file states for some bodies, { $stated } kg: give more with --mass (in Python, mass=…)
 robot_file-density_range = a density of { $value } kg/m³: expected more than 0, up to { $most }
 robot_file-mass_range = a mass of { $value } kg: expected more than 0, up to { $most }
@@ -1398,26 +1380,11 @@ robot_file-xacro_refused = xacro cannot expand { $file }: { $reason }
 robot_file-xacro_ran = { $file } is a program: xacro has run its expressions, in a process with limits
 robot_file-include = { $file } cannot be included: it is not an .xml file in the folder or package of the robot (--package NAME=FOLDER; in Python, packages=…), or it is included twice
 robot_file-guessed_tip = the file does not say which link is the tip: { $tip } is taken
-robot_file-guessed_free = floating, planar and ball joints stay where they are: { $names }{ $more ->
-        [0] {""}
-       *[other] {" "}and { $more } more
-    }
-robot_file-guessed_mimic = joints that follow another one stay where they are: { $names }{ $more ->
-        [0] {""}
-       *[other] {" "}and { $more } more
-    }
-robot_file-guessed_many = at most 8 joints can move on the way to the tip; these stay where they are: { $names }{ $more ->
-        [0] {""}
-       *[other] {" "}and { $more } more
-    }
-robot_file-guessed_off = joints off the way to the tip stay where they are: { $names }{ $more ->
-        [0] {""}
-       *[other] {" "}and { $more } more
-    }
-robot_file-guessed_limits = joints for which the file states no limits, or both as 0, are taken to have none: { $names }{ $more ->
-        [0] {""}
-       *[other] {" "}and { $more } more
-    }
+robot_file-guessed_free = floating, planar and ball joints stay where they are: { $names }
+robot_file-guessed_mimic = joints that follow another one stay where they are: { $names }
+robot_file-guessed_many = at most 8 joints can move on the way to the tip; these stay where they are: { $names }
+robot_file-guessed_off = joints off the way to the tip stay where they are: { $names }
+robot_file-guessed_limits = joints for which the file states no limits, or both as 0, are taken to have none: { $names }
 robot_file-mesh_unreadable = the mesh { $mesh } is left out: { $reason }
 robot_file-refused = <{ $element }> is not read, because it can read other files, run code or make many elements of one: leave it out, or load the file in MuJoCo and save it as plain elements
 robot_file-unknown = there is no such element in <{ $parent }>
@@ -1502,6 +1469,8 @@ arena-written = written: { $html } and { $csv }
 
 ## What stands around the stage: head, search, help, sheets
 
+question-yes = Yes
+question-no = No
 panel-handle = Controls: to half or all of the height
 search-title = Search
 search-hint = A setting, robot, law, path, lesson or key
@@ -1609,7 +1578,3 @@ robots-reading = Reading { $file } with the end-point { $tip } …
 robots-shapes = Reading the meshes for the end-point { $tip } …
 robots-not_built = { $file } with the end-point { $tip }: { $reason }. The robot stays as it was
 robots-not_read = it could not be read ({ $reason })
-
-## Joints that are dragged
-
-error-no_such_joint = this robot has no such joint

@@ -124,17 +124,19 @@ def locked_guess(code: str, joints: Sequence[str], values: Mapping[str, float]) 
         code: of its message, which names the joints.
         values: where they stay, [rad] or [m]; 0 if it is not said.
     """
-    named = some_names(joints)
     line = " ".join(
         f"--lock {shlex.quote(f'{name}={values.get(name, 0.0):.6g}')}" for name in joints
     )
-    return Guess("lock", Message(code, named), "" if named["more"] else line)
+    message = Message(code, some_names(joints))
+    return Guess("lock", message, line if len(joints) <= MOST_NAMES else "")
 
 
 def some_names(names: Sequence[str]) -> dict[str, Argument]:
-    """The first names, and how many more there are, as arguments of a message."""
-    first = ", ".join(shown(name) for name in names[:MOST_NAMES])
-    return {"names": first, "more": max(0, len(names) - MOST_NAMES)}
+    """The first names, and how many more there are, as the argument of a message."""
+    first, more = ", ".join(map(shown, names[:MOST_NAMES])), len(names) - MOST_NAMES
+    if more <= 0:
+        return {"names": first}
+    return {"names": Message("robot_file.and_more", {"names": first, "more": more})}
 
 
 def tip_guess(tip: str) -> Guess:
