@@ -103,7 +103,7 @@ def given_file(robot: str) -> GivenFile | None:
 
 def built_with(given: GivenFile) -> str:
     """The name of the robot in the catalogue that is from the same file, with this tip; or ""."""
-    for name, other in _FILES.items():
+    for name, other in tuple(_FILES.items()):  # a server's thread may add one meanwhile
         if other.file == given.file and other.tip == given.tip:
             return name
     return ""
@@ -111,7 +111,7 @@ def built_with(given: GivenFile) -> str:
 
 def to_type(file: str, tip: str) -> str:
     """What starts the lab with a file and its tip, as one types it."""
-    given = ["onpath", "--robot", file] if file else ["onpath", "--robot", "FILE"]
+    given = ["onpath", "--robot", file or "FILE"]
     return shlex.join(given + (["--tip", tip] if tip else []))
 
 
@@ -119,8 +119,8 @@ def robot_arguments(robot: str) -> list[str]:
     """`--robot` as the command line takes it: a name, or a file with its options."""
     if robot not in _FILES:
         return ["--robot", robot]
-    options = _FILES[robot].options
-    given = ["--robot", str(_FILES[robot].file)]
+    file, options = _FILES[robot].file, _FILES[robot].options
+    given = ["--robot", str(file)]
     given += ["--tip", options.tip] if options.tip else []
     for option, pairs in (
         ("--pose", options.pose),
@@ -130,9 +130,9 @@ def robot_arguments(robot: str) -> list[str]:
         for name, value in pairs.items():
             given += [option, f"{name}={value}"]
     for option, number in (
-        ("--armature", options.armature or None),
+        ("--armature", options.armature),
         ("--density", options.density),
         ("--mass", options.mass),
     ):
-        given += [] if number is None else [option, str(number)]
+        given += [option, str(number)] if number else []
     return given

@@ -9,7 +9,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from importlib import import_module
 from importlib.util import find_spec
-from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -23,9 +22,8 @@ DESCRIPTIONS = "robot_descriptions"
 PLACES = "URDF_PATH", "MJCF_PATH", "XACRO_PATH"
 """What such a module calls its file; a module may have several of them."""
 DEEPEST, MOST_ENTRIES, MOST_NAMES = 4, 5000, 20
-"""Of folders that are searched, of entries that are looked at, and of files that are listed."""
-HEAD = 1 << 16
-"""In which a file's first element is looked for, [B]."""
+"""How deep a folder is searched, how many files are looked at, and how many are listed."""
+HEAD = 1 << 16  # [B] of a file that are searched for its first element
 _ROOT = re.compile(rb"<(robot|mujoco)[\s>]")
 _NAME = re.compile(r"[a-z0-9_]{1,80}")
 
@@ -77,19 +75,20 @@ def only_file_in(folder: Path) -> Path:
     Raises:
         CodedError: it has none, or several, which are listed.
     """
-    found = sorted(islice(_files_in(folder), MOST_ENTRIES))
+    found = sorted(_files_in(folder))
     plain = [file for file in found if file.suffix.lower() != ".xacro"]
-    if len(files := plain or found) == 1:  # what is written in xacro may only be its source
+    files = plain or found  # a xacro file beside others may be what they were made from
+    if len(files) == 1:
         return files[0]
     if not files:
         raise CodedError("robot_file.empty_folder", folder=str(folder), endings=", ".join(ENDINGS))
     lines = [f"--robot {shlex.quote(str(file))}" for file in files[:MOST_NAMES]]
-    more = len(files) - len(lines)
+    lines += ["…"] if len(files) > MOST_NAMES else []
     raise CodedError(
         "robot_file.which_file",
         folder=str(folder),
         count=len(files),
-        lines=", ".join(lines + ["…"] * bool(more)),
+        lines=", ".join(lines),
     )
 
 
