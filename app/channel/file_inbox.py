@@ -13,10 +13,8 @@ from onpath.models.errors import CodedError
 MOST_BYTES = 1_000_000  # [B] of a file with a path
 MOST_TOGETHER = 50_000_000  # [B], of the files of all pages that are under way
 SECONDS = 30.0  # [s] that a file may take from its first message to its last
-FILES, FILES_PER_SECOND = (
-    10,
-    0.1,
-)  # files that a page may send in a burst, and per second in the long run
+FILES, FILES_PER_SECOND = 10, 0.1
+"""Files that a page may send in a burst, and per second in the long run."""
 
 
 class FileInbox:

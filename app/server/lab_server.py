@@ -39,7 +39,7 @@ from onpath.app.server.page_context import PageContext
 from onpath.app.server.page_data import PageData
 from onpath.app.server.page_text import PageText
 from onpath.app.server.robot_shapes import prepare_shapes
-from onpath.app.server.robot_tips import RobotTips, Tell
+from onpath.app.server.robot_tips import Remark, RobotTips
 from onpath.app.server.server_options import USUAL, ServerOptions
 from onpath.app.server.site_address import reachable_site, site_for_students
 from onpath.app.server.visit import Visit
@@ -297,7 +297,7 @@ class LabServer:
             enter=partial(self._enter, visit),
             text=text,
             choose_tip=partial(self._tips.choose, post=lab.post),
-            remark=lambda text: lab.post(Tell(text)),
+            remark=lambda text: lab.post(Remark(text)),
             seat=seat if teaching is None else None,
             look=visit.look,
             privacy_url=self._options.privacy_url,

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import NoReturn
 
 from onpath.app.classroom.teaching.teacher_context import TeacherContext
 from onpath.app.common.presses import Presses
 from onpath.app.scene.client_scene import Look
 from onpath.app.server.page_text import PageText
 from onpath.lessons.course import Course
-from onpath.models.errors import CodedError
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,14 +30,6 @@ class ClassSeat:
     code: str = ""
 
 
-def _no_tip(*_: str) -> NoReturn:
-    raise CodedError("robots.no_such_tip")
-
-
-def _unheard(text: str) -> None:
-    del text
-
-
 @dataclass(frozen=True, slots=True)
 class PageContext:
     """The context of one client's page.
@@ -50,7 +40,7 @@ class PageContext:
         keep_days: number of days without use after which the lab is deleted; 0 if it lasts only
             as long as the server.
         enter: opens the lab of a code; raises ValueError with a message.
-        choose_tip: gives the lab a robot of the server's file with another tip; raises ValueError.
+        choose_tip: gives the lab a robot from a file with another tip; raises ValueError.
         remark: shows a text as the lab's message.
         seat: the lab's place in the class, or None without a class.
         look: how the scene is to be drawn.
@@ -66,8 +56,8 @@ class PageContext:
     keep_days: int
     enter: Callable[[str], None]
     text: PageText
-    choose_tip: Callable[[str, str], None] = _no_tip
-    remark: Callable[[str], None] = _unheard
+    choose_tip: Callable[[str, str], None]
+    remark: Callable[[str], None]
     seat: ClassSeat | None = None
     look: Look = field(default_factory=Look)
     privacy_url: str = ""

@@ -38,7 +38,7 @@ class ProcessorTime:
         self._elapsed = self._share = self._used = 0.0
 
     def check(self) -> None:
-        """Look at what has been used since the last look."""
+        """Read what has been used since the last check."""
         before, self._threads = self._threads, self._read()
         since, self._time = self._time, self._clock()
         used, self._process = self._process, time.process_time()

@@ -27,13 +27,14 @@ from onpath.app.simulation.simulation_thread import SimulationThread
 from onpath.models.control.settable import with_values
 from onpath.models.errors import CodedError, Message
 from onpath.models.systems.catalogue import robot_named
+from onpath.models.systems.xml_elements import shown
 
 LONGEST = 60.0  # [s] that reading a file may take
 Post = Callable[[Command], None]
 
 
 class RobotTips:
-    """The tips that files suggest which were given when the server was started.
+    """The tips suggested by the files with which the server was started.
 
     A robot is built once, one at a time, and is the same for all labs of the server.
 
@@ -61,13 +62,13 @@ class RobotTips:
         with self._one_at_a_time:
             name = built_with(wanted)
             if not name:
-                name = self._built(wanted, lambda told: post(Tell(told)))
+                name = self._built(wanted, lambda message: post(Remark(message)))
         if name:
             post(_ChooseBuilt(name))
 
     def _built(self, wanted: GivenFile, tell: Callable[[Message], None]) -> str:
         """Build a robot; returns its name, or "" if it has been told why it is not possible."""
-        file, tip = wanted.file.name[:40], wanted.tip[:40]
+        file, tip = shown(wanted.file.name), shown(wanted.tip)
         tell(Message("robots.reading", {"file": file, "tip": tip}))
         process = ExportProcess()
         try:
@@ -93,15 +94,15 @@ def _read(given: GivenFile) -> ReadFile | Message:
 
 
 @dataclass(frozen=True, slots=True)
-class Tell(Command):
-    """Say how far the building of a robot is, or why there is none."""
+class Remark(Command):
+    """Show how far the building of a robot is, or why there is none."""
 
-    message: Message | str
+    text: Message | str
 
     @override
     def apply(self, lab: Lab) -> None:
-        said = self.message
-        lab.remark(said if isinstance(said, str) else lab.words.sentence(said))
+        text = self.text
+        lab.remark(text if isinstance(text, str) else lab.words.sentence(text))
 
 
 @dataclass(frozen=True, slots=True)

@@ -105,6 +105,8 @@ class World:
             keep_days=7,
             enter=lambda _: None,
             text=text,
+            choose_tip=lambda *_: None,
+            remark=lambda _: None,
             seat=self.seat(page),
             presses=AtOnce(),
         )
