@@ -36,8 +36,8 @@ from onpath.models.studies.arena import (
 from onpath.models.studies.path_text import curve_from_text
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.guessed_numbers import (
-    Quantity,
     guessed_kinds,
+    quantities_of,
     told_guesses,
     with_mark,
 )
@@ -53,8 +53,8 @@ SHOWN: dict[str, tuple[float, str, int]] = {
 """Measure -> factor, unit and decimals with which it is shown."""
 BETTER = {name: "larger" for name in LARGER_IS_BETTER} | {"delay_s": "near_zero"}
 """What is better, if it is not a smaller value."""
-MEASURED: tuple[Quantity, ...] = ("end_point", "coupling")
-"""What the measures tell of a robot, of what may be guessed."""
+MEASURE = "max_distance"
+"""Any measure of the table: all rest on the same guesses."""
 NO_BREAK = "\N{NO-BREAK SPACE}"
 WIDTH, HEIGHT, MARGIN = 460, 150, 4  # of the picture over time
 SIDE = 150  # of the picture of the plane
@@ -134,7 +134,7 @@ def arena_page(contents: Contents, words: Words) -> str:
 def _marked_label(robot: str, words: Words) -> str:
     """A robot's label, with a mark if the numbers of its table rest on guesses."""
     label, guesses = robot_label(robot, words), ROBOTS[robot].guesses
-    return with_mark(label, guesses, "max_distance", words.language)
+    return with_mark(label, guesses, MEASURE, words.language)
 
 
 def _limit(row: Row) -> str:
@@ -336,7 +336,7 @@ def run_rows(contents: Contents) -> Iterator[dict[str, object]]:
         yield {
             "trial": trial.number,
             "robot": trial.robot,
-            "guessed": " ".join(guessed_kinds(ROBOTS[trial.robot].guesses, MEASURED)),
+            "guessed": " ".join(guessed_kinds(ROBOTS[trial.robot].guesses, quantities_of(MEASURE))),
             "path": trial.path,
             "obstruction": trial.obstruction,
             "condition": trial.condition,

@@ -100,22 +100,10 @@ def test_texts_are_short_and_visible(entry: RobotEntry) -> None:
     (passed,) = (stop.reason for stop in robot.stops or () if callable(stop.reason))
     said = [str(told), str(passed(np.array([9.0, 0, 0]), entry.parameters())), repr(entry)]
     for language in ("en", "de"):
-        words = Words(language)
-        said += [told.text(language) if told else "", *dataclasses.astuple(_card(entry, words))]
+        card = robot_card(entry, Words(language))
+        said += [told.text(language) if told else "", card.label, card.differs, card.text]
     for text in said:
         assert text.isprintable() and len(text) < LONG
-
-
-@dataclasses.dataclass
-class _Texts:
-    label: str
-    differs: str
-    text: str
-
-
-def _card(entry: RobotEntry, words: Words) -> _Texts:
-    card = robot_card(entry, words)
-    return _Texts(card.label, card.differs, card.text)
 
 
 def test_cells_of_a_notebook_have_no_elements_of_a_name(entry: RobotEntry) -> None:
