@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 import warnings
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -18,14 +17,6 @@ from tests.support.robot_files import PLANAR, urdf
 
 ARM = urdf("own", PLANAR)
 POSE = {"joint1": 2.0, "joint2": -1.3, "joint3": -0.9}
-
-
-@pytest.fixture(autouse=True)
-def same_catalogue() -> Iterator[None]:
-    before = dict(ROBOTS)
-    yield
-    for name in ROBOTS.keys() - before.keys():
-        del ROBOTS[name]
 
 
 def test_a_folder_stands_for_the_only_robot_in_it(tmp_path: Path) -> None:

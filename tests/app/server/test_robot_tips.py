@@ -29,13 +29,10 @@ FORK = (
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LabServer]:
     file = tmp_path_factory.mktemp("robot") / "arm.urdf"
     file.write_text(urdf("own", PLANAR).replace("</robot>", FORK), "utf-8")
-    before = dict(ROBOTS)
     entry = RobotOptions(tip="tool0").entry_of(str(file))
     server = LabServer("127.0.0.1", 0, LoopCache(), ServerOptions(robot=entry))
     yield server
     server.stop()
-    for name in ROBOTS.keys() - before.keys():
-        del ROBOTS[name]
 
 
 def student(server: LabServer) -> Student:
@@ -100,8 +97,8 @@ def _names() -> list[str]:
     return list(ROBOTS)
 
 
-def test_every_robot_is_offered_once(server: LabServer) -> None:
+@pytest.mark.usefixtures("server")
+def test_every_robot_is_offered_once() -> None:
     sheet = robot_sheet(ENGLISH)
     assert len({(card.name, card.tip, card.is_built) for card in sheet.robots}) == len(sheet.robots)
     assert {card.name for card in sheet.robots if card.is_built} == set(ROBOTS)
-    del server

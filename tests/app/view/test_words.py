@@ -529,13 +529,13 @@ def test_counts_have_plurals_in_every_language() -> None:
                 assert words(key, **others | {count: 1}) != words(key, **others | {count: 2}), key
 
 
-@pytest.mark.thorough
 @pytest.mark.parametrize("language", languages())
 def test_what_the_page_shows_as_plain_text_is_one_line_without_markdown(language: str) -> None:
     told = json.loads(words_message(language))["words"]
     assert not {key: text for key, text in told.items() if re.search(r"\n|[*_]{2}|`", text)}
 
 
+@pytest.mark.thorough
 def test_a_count_is_given_as_a_number() -> None:
     """A plural of a text would always be the general one."""
     counted: dict[str, set[str]] = {}
