@@ -119,7 +119,7 @@ def test_anything_without_a_sign_of_life_for_long_enough_hangs(
 
 @linux_only
 @pytest.mark.parametrize("address", ["{}/notify", "@onpath-test-{}"])
-def test_systemd_hears_from_a_process_at_every_look(
+def test_systemd_hears_from_a_process_at_every_check(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, address: str
 ) -> None:
     address = address.format(tmp_path)[:100]
