@@ -217,6 +217,7 @@ def test_a_refusal_is_over_the_scene_moves_nothing_and_is_told_again_when_it_was
     before, scene = button.bounding_box(), tab._canvas()
     for _ in range(2):
         tab.ask(c.Set("rate", 1000))
+        expect(message).to_be_visible()  # its text is there while it is hidden, too
         expect(message).to_contain_text("1000")
         box = message.bounding_box()
         assert box and before == button.bounding_box()

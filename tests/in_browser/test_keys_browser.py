@@ -27,7 +27,6 @@ OPENS = "O"  # opens a lesson, which places the camera
 SILENT = ("Home", "q", "e", "PageDown", "PageUp")  # they ask nothing of the lab that counts
 OPPOSITE = ("ArrowRight", "ArrowDown", "d", "s", "e", "f", "PageUp")  # to keys on the other side
 LESSON = "01-path-or-timetable"
-TOUCH = {"viewport": {"width": 390, "height": 844}, "has_touch": True}
 
 
 @contextmanager

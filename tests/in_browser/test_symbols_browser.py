@@ -55,10 +55,6 @@ DRAWN = """() => {
     return ways.map(way => way.map(each => [each[0] + x, each[1] + y]))
 }"""
 """Lines over the robots, in pixels of the window; each is drawn twice, with a rim first."""
-IN_LENSES = """() => [...document.querySelectorAll(".lens canvas")].map(canvas => {
-    const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height)
-    return data.join()
-})"""
 GAINS = """() => [...document.querySelectorAll(".field.lit")]
     .filter(each => each.checkVisibility()).map(each => each.dataset.name)"""
 NEAR = 3.0  # [px]
