@@ -13,7 +13,7 @@ from onpath.lessons.words import Words
 from onpath.models.closed_loop.lab_settings import SETTINGS
 from onpath.models.control.laws.registry import LAWS, law_named
 from onpath.models.control.settable import specs
-from onpath.models.systems.guessed_numbers import with_mark
+from onpath.models.systems.guessed_numbers import setting_with_mark
 from onpath.models.systems.guesses import Guess
 from onpath.models.systems.parameter_specs import Need, Spec
 from onpath.models.systems.parameters import Parameters
@@ -62,7 +62,7 @@ def setting_field(
     return FormField(
         name=name,
         kind=spec.kind,
-        label=with_mark(parameter_label(name, spec, words), guesses, name, words.language),
+        label=setting_with_mark(parameter_label(name, spec, words), guesses, name, words.language),
         symbol=spec.symbol,
         unit=unit,
         help=parameter_help(name, spec, words),

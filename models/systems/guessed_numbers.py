@@ -8,13 +8,13 @@ from typing import Literal
 
 from onpath.assets.messages import DEFAULT
 from onpath.models.errors import Message
-from onpath.models.systems.guesses import Guess
+from onpath.models.systems.guesses import Guess, GuessKind
 
 Quantity = Literal["torque", "coupling", "limit", "end_point", "start"]
 """What numbers tell: of motors and weights, of how masses answer a force, of what motors can give,
 of where the end-point is, of where a run starts."""
 
-RESTS_ON: Mapping[Quantity, tuple[str, ...]] = {
+RESTS_ON: Mapping[Quantity, tuple[GuessKind, ...]] = {
     "torque": ("mass", "inertia"),
     "coupling": ("mass", "inertia"),
     "limit": ("effort",),
@@ -24,7 +24,7 @@ RESTS_ON: Mapping[Quantity, tuple[str, ...]] = {
 """Kinds of guesses that decide on each quantity."""
 
 LONGEST_LINE = 500  # of what is told to be typed, [characters]
-NAMES: Mapping[str, Message] = {
+NAMES: Mapping[GuessKind, Message] = {
     "mass": Message("guess.mass"),
     "inertia": Message("guess.inertia"),
     "effort": Message("guess.effort"),
@@ -33,7 +33,7 @@ NAMES: Mapping[str, Message] = {
 }
 """What is guessed, as a mark says it."""
 TOLD: Mapping[str, tuple[Quantity, ...]] = {
-    **dict.fromkeys(("tau", "torque", "max_torque", "rms_torque"), ("torque",)),
+    **dict.fromkeys(("tau", "max_torque", "rms_torque"), ("torque",)),
     **dict.fromkeys(("y", "theta", "xi", "distance", "speed", "force"), ("end_point",)),
     **dict.fromkeys(
         (
@@ -42,13 +42,16 @@ TOLD: Mapping[str, tuple[Quantity, ...]] = {
         ),
         ("end_point", "coupling"),
     ),
+}
+"""What numbers tell, by their names in files, tables and plots, without units and counts."""
+SETTINGS: Mapping[str, tuple[Quantity, ...]] = {
     "torque_limit": ("limit",),
     "error_inertia": ("coupling",),
     **dict.fromkeys(("error_gravity", "payload"), ("torque",)),
     **dict.fromkeys(("start_along", "start_across"), ("start",)),
 }
-"""What numbers tell, by their names in files, tables and forms, without units and counts."""
-_UNIT_OR_COUNT = re.compile(r"(_(Nm|Ns|[mNJs]|m2|rad|rate|ref|rad_s|m_s|m2_s))+$|\d+")
+"""What settings tell, by their names. One may be called like a number, as `delay` is."""
+_UNIT_OR_COUNT = re.compile(r"(_(Nm|Ns|[mNJs]|m2|rad|rate|ref))+$|\d+")
 
 
 def quantities_of(name: str) -> tuple[Quantity, ...]:
@@ -60,7 +63,9 @@ def quantities_of(name: str) -> tuple[Quantity, ...]:
     return TOLD.get(name) or TOLD.get(_UNIT_OR_COUNT.sub("", name), ())
 
 
-def guessed_kinds(guesses: Iterable[Guess], quantities: Iterable[Quantity]) -> tuple[str, ...]:
+def guessed_kinds(
+    guesses: Iterable[Guess], quantities: Iterable[Quantity]
+) -> tuple[GuessKind, ...]:
     """Kinds of the guesses on which a number rests, each once, in the order of the guesses.
 
     Args:
@@ -90,7 +95,20 @@ def with_mark(text: str, guesses: Iterable[Guess], name: str = "", language: str
     Args:
         name: of the number; see `quantities_of`; "": the text.
     """
-    mark = guess_mark(guesses, quantities_of(name or text))
+    return _marked(text, guesses, quantities_of(name or text), language)
+
+
+def setting_with_mark(
+    label: str, guesses: Iterable[Guess], name: str, language: str = DEFAULT
+) -> str:
+    """The label of a setting, with its mark in parentheses, if it has one."""
+    return _marked(label, guesses, SETTINGS.get(name, ()), language)
+
+
+def _marked(
+    text: str, guesses: Iterable[Guess], quantities: Iterable[Quantity], language: str
+) -> str:
+    mark = guess_mark(guesses, quantities)
     return text if mark is None else f"{text} ({mark.text(language)})"
 
 

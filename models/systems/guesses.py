@@ -7,6 +7,8 @@ from typing import Literal
 
 from onpath.models.errors import Message
 
+GuessKind = Literal["tip", "pose", "mass", "inertia", "effort", "lock", "package"]
+
 
 @dataclass(frozen=True, slots=True)
 class Guess:
@@ -19,6 +21,6 @@ class Guess:
         line: what to type to settle it, such as "--tip tool0"; empty where nothing helps.
     """
 
-    kind: Literal["tip", "pose", "mass", "inertia", "effort", "lock", "package"]
+    kind: GuessKind
     message: Message
     line: str = ""

@@ -6,14 +6,20 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from onpath.app.exports.figures import PANELS
+from onpath.app.exports.summary_text import ROWS as SUMMARY
 from onpath.models.closed_loop.trajectory import header, without_mark
+from onpath.models.control.settable import specs
+from onpath.models.studies.comparison import MEASURES
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.guessed_numbers import (
     RESTS_ON,
+    SETTINGS,
     TOLD,
     guess_mark,
     guessed_kinds,
     quantities_of,
+    setting_with_mark,
     told_guesses,
     with_mark,
 )
@@ -36,6 +42,22 @@ def test_a_number_is_marked_exactly_if_it_rests_on_a_guess(
     assert (mark is None) == (not found)
     if mark is not None:
         assert marked == f"12.3 N m ({mark.text(language)})"
+
+
+def test_every_number_of_a_summary_comparison_or_picture_tells_something() -> None:
+    """None is left out under a name that nobody knows."""
+    names = {*MEASURES, *(name for name, *_ in SUMMARY), *PANELS.values()}
+    assert {name for name in names if not quantities_of(name)} == {"stopped_at_s"}
+
+
+def test_a_setting_is_marked_by_its_own_name_and_not_by_that_of_a_number() -> None:
+    known = {name for each in ROBOTS.values() for name in specs(each.parameters())}
+    assert {*SETTINGS} - known == {"start_along", "start_across"}
+    some = tuple(map(guess, KINDS))
+    marked = {name for name in known if setting_with_mark(name, some, name) != name}
+    assert marked == {*SETTINGS} & known
+    assert quantities_of("speed") and quantities_of("delay_s")
+    assert not {"speed", "delay"} & marked
 
 
 @given(guesses)
