@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
 from onpath.models.arrays import Array
-from onpath.models.errors import Argument, Message
+from onpath.models.errors import Argument, CodedError, Message
 from onpath.models.systems.guesses import Guess
 from onpath.models.systems.rigid_chain import Body, Chain, Joint, Shape
 from onpath.models.systems.xml_elements import shown
@@ -117,6 +117,33 @@ class Group:
         )
 
 
+def check_joints(options: Options, joints: Collection[str]) -> None:
+    """Check that options name joints of the file.
+
+    Raises:
+        CodedError: there is no such joint.
+    """
+    for name in (*options.lock, *options.pose):
+        if name not in joints:
+            raise CodedError("robot_file.no_joint", joint=shown(name), names=", ".join(joints))
+
+
+def locked_guesses(
+    held: Mapping[str, str], off: Iterable[str], options: Options
+) -> Iterator[Guess]:
+    """The guesses that joints stay where they are, one for each reason.
+
+    Args:
+        held: joints on the way to the tip -> code of the message that says why they stay.
+        off: joints off the way to the tip.
+    """
+    for code in dict.fromkeys(held.values()):
+        yield locked_guess(code, [name for name in held if held[name] == code], options.pose)
+    unsaid = [name for name in off if name not in {*options.lock, *options.pose}]
+    if unsaid:
+        yield locked_guess("robot_file.guessed_off", unsaid, {})
+
+
 def locked_guess(code: str, joints: Sequence[str], values: Mapping[str, float]) -> Guess:
     """The guess that joints stay where they are.
 
@@ -139,7 +166,7 @@ def some_names(names: Sequence[str]) -> dict[str, Argument]:
     return {"names": Message("robot_file.and_more", {"names": first, "more": more})}
 
 
-def tip_guess(tip: str) -> Guess:
+def guessed_tip(tip: str) -> Guess:
     """The guess that a link is the tip."""
     message = Message("robot_file.guessed_tip", {"tip": shown(tip)})
     return Guess("tip", message, f"--tip {shlex.quote(tip)}")

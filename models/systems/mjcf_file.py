@@ -22,22 +22,17 @@ from onpath.models.systems.file_chain import (
     Options,
     RigidTransform,
     aligned,
+    check_joints,
     exact,
-    locked_guess,
-    tip_guess,
+    guessed_tip,
+    locked_guesses,
     turn,
 )
 from onpath.models.systems.guesses import Guess
 from onpath.models.systems.mjcf_check import all_elements, checked_model
 from onpath.models.systems.mujoco_process import read_model
 from onpath.models.systems.rigid_chain import Chain, Joint, Shape
-from onpath.models.systems.tip_guess import (
-    MOST_TIPS,
-    TipPlace,
-    check_limbs,
-    limb_joints,
-    suggested_tips,
-)
+from onpath.models.systems.tip_guess import TipPlace, suggested_tips, surplus_joints
 from onpath.models.systems.xml_elements import Element, FileFault, safe_name, shown
 
 FREE, BALL, SLIDE = 0, 1, 2  # types of joints in MuJoCo; 3 turns
@@ -79,11 +74,9 @@ class _Model:
         self._model, self._root, self._options = model, root, options
         self._way = set[int]()  # bodies from the world to the tip
         self._held = dict[str, str]()  # joints on the way that are locked without being asked
-        self._joints = {name or f"joint{i}": i for i, name in enumerate(model.joint_names)}
-        for name in (*options.lock, *options.pose):
-            if name not in self._joints:
-                names = ", ".join(self._joints)
-                raise CodedError("robot_file.no_joint", joint=shown(name), names=names)
+        model.joint_names = [name or f"joint{i}" for i, name in enumerate(model.joint_names)]
+        self._joints = {name: i for i, name in enumerate(model.joint_names)}
+        check_joints(options, self._joints)
 
     def read(self) -> FileChain:
         """The chain, its home and remarks."""
@@ -132,9 +125,8 @@ class _Model:
         model = self._model
         first, count = int(model.body_jntadr[body]), int(model.body_jntnum[body])
         for i in range(first, first + count):
-            name = model.joint_names[i] or f"joint{i}"
-            kind = int(model.jnt_type[i])
-            if kind in (FREE, BALL):
+            name, kind = model.joint_names[i], int(model.jnt_type[i])
+            if not self._moves(i):
                 continue
             anchor = RigidTransform(translation=np.array(model.jnt_pos[i]))
             back = RigidTransform(translation=-anchor.translation)
@@ -244,20 +236,15 @@ class _Model:
         if not names:
             return {}
         values = model.key_qpos[names.index("home") if "home" in names else 0]
-        turning = {n: i for n, i in self._joints.items() if model.jnt_type[i] not in (FREE, BALL)}
-        at = {name: int(model.jnt_qposadr[i]) for name, i in turning.items()}
+        at = {n: int(model.jnt_qposadr[i]) for n, i in self._joints.items() if self._moves(i)}
         return {name: float(values[k] - model.qpos0[k]) for name, k in at.items()}
 
     def _suggested(self) -> tuple[str, ...]:
         """The bodies and sites that may be the tip; the first one is it."""
-        places, tip = self._places(), self._options.tip
-        if not tip:
-            check_limbs(places)
-        names = [places[i].name for i in suggested_tips(places) if places[i].name]
-        if not tip and not names:
+        tips = suggested_tips(self._places(), self._options.tip)
+        if not tips:  # what moves has no name
             raise FileFault(self._root, Message("robot_file.still_tip"))
-        found = [tip, *(name for name in names if name != tip)] if tip else names
-        return tuple(found[:MOST_TIPS])
+        return tips
 
     def _places(self) -> list[TipPlace]:
         """The bodies, parents before children, and then the sites."""
@@ -265,7 +252,7 @@ class _Model:
         for body in range(1, len(model.body_names)):
             first, count = int(model.body_jntadr[body]), int(model.body_jntnum[body])
             joints = range(first, first + count)
-            names = [model.joint_names[i] or f"joint{i}" for i in joints if self._moves(i)]
+            names = [model.joint_names[i] for i in joints if self._moves(i)]
             step = float(np.linalg.norm(model.body_pos[body]))
             parent = int(model.body_parentid[body])
             place = TipPlace(model.body_names[body], parent, tuple(names), step=step)
@@ -277,6 +264,7 @@ class _Model:
         return places
 
     def _moves(self, i: int) -> bool:
+        """Whether a joint turns about an axis or slides along it."""
         return int(self._model.jnt_type[i]) not in (FREE, BALL)
 
     def _held_joints(self, tip: str) -> dict[str, str]:
@@ -289,13 +277,8 @@ class _Model:
                 held[name] = "robot_file.guessed_free"
             else:
                 moving.append(name)
-        if len(moving) > MOST_JOINTS:
-            places = self._places()
-            at = next(i for i, place in enumerate(places) if i and place.name == tip)
-            kept = limb_joints(places, at, MOST_JOINTS)
-            many = [name for name in moving if name not in kept]
-            held |= dict.fromkeys(many, "robot_file.guessed_many")
-        return held
+        many = surplus_joints(self._places(), tip, moving, MOST_JOINTS)
+        return held | dict.fromkeys(many, "robot_file.guessed_many")
 
     def _guesses(self, tip: str) -> Iterator[Guess]:
         """What the file does not say."""
@@ -303,18 +286,10 @@ class _Model:
         parents = {int(parent) for parent in self._model.body_parentid[1:]}
         bodies = [name for i, name in enumerate(self._model.body_names) if i and i not in parents]
         if not options.tip and len([name for name in self._model.site_names if name] or bodies) > 1:
-            yield tip_guess(tip)
-        for code in dict.fromkeys(self._held.values()):
-            names = [name for name, why in self._held.items() if why == code]
-            yield locked_guess(code, names, options.pose)
-        off = [
-            name
-            for name, i in self._joints.items()
-            if int(self._model.jnt_bodyid[i]) not in self._way
-            and name not in {*options.lock, *options.pose}
-        ]
-        if off:
-            yield locked_guess("robot_file.guessed_off", off, {})
+            yield guessed_tip(tip)
+        bodies_of = self._model.jnt_bodyid
+        off = [name for name, i in self._joints.items() if int(bodies_of[i]) not in self._way]
+        yield from locked_guesses(self._held, off, options)
 
     def _tip(self, wanted: str) -> tuple[int, RigidTransform]:
         """The body of the tip, and the tip in it."""

@@ -2,7 +2,7 @@
 
 Fingers are not tips, nor are cameras, heads and wheels if there is an arm. A link that is called
 like a tool is preferred, then the end of the longest chain, an arm to a leg, the right one to the
-left one, and the larger one.
+left one, and the larger one. `_TipTree.rank` is this order.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ MOST_TIPS = 5  # that are suggested
 LEAST_JOINTS = 3  # on the way to an arm's tip
 PALM_JOINTS = 3  # least number before a link from which fingers branch off
 FINGER_JOINTS = 4  # most of a finger
-FINGERS = 3  # least number on a hand
-HEAD = 3  # rank of a head among limbs
+HAND_FINGERS = 3  # least number on a hand
+ARM, OTHER, LEG, HEAD = range(4)  # limbs, the likeliest to have the tip first
 NAMED = 2  # joints that a name of a tool counts for
 _WORD = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d+")
 _JOINED = {
@@ -36,7 +36,7 @@ TOOLS = (
 _GENERAL = {"link", "frame", "body", "site", "base", "right", "left", "r", "l", "center", "point"}
 """Words that say nothing at the end of a name."""
 _FINGER_PARTS = ("finger", "thumb", "knuckle", "jaw", "claw", "pinky", "phalan")
-_FINGERS = {"index", "middle", "ring", "little", "pad", "proximal", "distal", "digit"}
+_FINGER_WORDS = {"index", "middle", "ring", "little", "pad", "proximal", "distal", "digit"}
 _GRIPPERS = {"gripper", "grip"}
 _PALMS = {"palm", "hand"}
 _TURNS = {"yaw", "pitch", "roll", "rotate", "rotation", "revolute", "wrist"}
@@ -76,12 +76,28 @@ class TipPlace:
     step: float = 0.0
 
 
-def suggested_tips(places: Sequence[TipPlace]) -> list[int]:
+def suggested_tips(places: Sequence[TipPlace], tip: str) -> tuple[str, ...]:
+    """The names that the tip may have, best first, at most `MOST_TIPS`.
+
+    Args:
+        tip: the name that was asked for, which is the first one; empty: none was.
+
+    Raises:
+        CodedError: no tip was asked for, and nothing moves, or all that moves are fingers.
+    """
+    tree = _TipTree(places)
+    if not tip:
+        _check_limbs(tree)
+    names = [places[i].name for i in _ranked(tree) if places[i].name]
+    found = [tip, *(name for name in names if name != tip)] if tip else names
+    return tuple(found[:MOST_TIPS])
+
+
+def _ranked(tree: _TipTree) -> list[int]:
     """Which places may be the tip, best first, at most `MOST_TIPS`; none if nothing moves.
 
     If there is only one end, which is no finger, it is the first.
     """
-    tree = _TipTree(places)
     order = sorted((i for i, k in enumerate(tree.joints) if k), key=tree.rank)
     if len(tree.ends) == 1 and tree.joints[tree.ends[0]] and not tree.fingers[tree.ends[0]]:
         order = [tree.ends[0], *(i for i in order if i != tree.ends[0])]
@@ -96,36 +112,39 @@ def suggested_tips(places: Sequence[TipPlace]) -> list[int]:
     return found[:MOST_TIPS]
 
 
-def check_limbs(places: Sequence[TipPlace]) -> None:
-    """Check that a file of which nobody has named the tip may have an arm or a leg.
-
-    Raises:
-        CodedError: nothing moves, or all that moves are fingers.
-    """
-    tree = _TipTree(places)
+def _check_limbs(tree: _TipTree) -> None:
+    """Check that there may be an arm or a leg."""
     moving = [i for i, count in enumerate(tree.joints) if count]
     if not moving:
         raise CodedError("robot_file.no_joints")
     ends = [i for i in tree.ends if tree.joints[i]]
     root = {word for i, count in enumerate(tree.joints) if not count for word in tree.words[i]}
-    on_palm = len(tree.leaving.get(0, [])) >= FINGERS and bool(root & _PALMS)
+    on_palm = len(tree.leaving.get(0, [])) >= HAND_FINGERS and bool(root & _PALMS)
     if on_palm or (len(ends) > 1 and all(tree.fingers[i] for i in moving)):
         raise CodedError("robot_file.hand")
 
 
-def limb_joints(places: Sequence[TipPlace], tip: int, most: int) -> list[str]:
-    """The joints on the way to a tip that move if there are more than `most`.
+def surplus_joints(
+    places: Sequence[TipPlace], tip: str, moving: Sequence[str], most: int
+) -> list[str]:
+    """The joints on the way to a tip that must stay, because no more than `most` can move.
 
-    They are those behind the place from which another limb branches off, if there is one and these
-    are not too many; else the last ones.
+    Those move that are behind the place from which another limb branches off, if there is one and
+    these are not too many; else the last ones.
+
+    Args:
+        moving: joints on the way.
     """
-    tree, joints, i = _TipTree(places), list[str](), tip
+    if len(moving) <= most:
+        return []
+    tree, joints = _TipTree(places), list[str]()
+    i = next(i for i, place in enumerate(places) if i and place.name == tip)
     while (before := places[i].parent) >= 0:
         joints = [*places[i].joints, *joints]
         if places[i].joints and len(joints) >= LEAST_JOINTS and tree.branches(before):
             break
         i = before
-    return joints[-most:]
+    return [name for name in moving if name not in joints[-most:]]
 
 
 class _TipTree:
@@ -206,10 +225,11 @@ class _TipTree:
         return self._height[self.group[i]] + len(self._places[i].joints)
 
     def rank(self, i: int) -> tuple[float, ...]:
-        """The less, the better."""
+        """What makes a place a bad tip, the most important first: the least one is the best."""
         words, joints = self.words[i], self.joints[i]
         near = {word for name in self._last[i] for word in _words(name)} | {*words}
-        limb = HEAD if near & _HEADS else 2 if near & _LEGS else 0 if near & _ARMS else 1
+        kinds = ((HEAD, _HEADS), (LEG, _LEGS), (ARM, _ARMS))
+        limb = next((kind for kind, named in kinds if near & named), OTHER)
         tool = _tool(words)
         return (
             self.fingers[i],
@@ -246,6 +266,7 @@ def _tool(words: Sequence[str]) -> int:
 
 
 def _like_finger(name: str) -> bool:
+    """Whether a name is that of a part of a finger."""
     return any(part in name[:128].lower() for part in _FINGER_PARTS) or bool(
-        {*_words(name)} & _FINGERS
+        {*_words(name)} & _FINGER_WORDS
     )

@@ -24,23 +24,19 @@ from onpath.models.systems.file_chain import (
     Options,
     RigidTransform,
     aligned,
+    check_joints,
     exact,
+    guessed_tip,
     locked_guess,
+    locked_guesses,
     some_names,
-    tip_guess,
     turn,
 )
 from onpath.models.systems.file_masses import LinkMass, Masses, add_masses, is_dummy
 from onpath.models.systems.guesses import Guess
 from onpath.models.systems.mesh_folders import MeshFolders
 from onpath.models.systems.rigid_chain import Chain, Joint, Shape
-from onpath.models.systems.tip_guess import (
-    MOST_TIPS,
-    TipPlace,
-    check_limbs,
-    limb_joints,
-    suggested_tips,
-)
+from onpath.models.systems.tip_guess import TipPlace, suggested_tips, surplus_joints
 from onpath.models.systems.xml_elements import Element, FileFault, safe_name, shown
 
 MOST_LINKS = 1000
@@ -91,7 +87,7 @@ class _Tree:
         for joint in self._joints.values():
             self._after.setdefault(joint.need("parent").name("link"), []).append(joint)
         self._base = self._checked_base()
-        self._check_names()
+        check_joints(options, self._joints)
         self._places = self._tree()
         self.tips = self._suggested()
         self._tip = self.tips[0]
@@ -140,11 +136,7 @@ class _Tree:
         if tip and tip not in self._links:
             names = ", ".join(self._links)
             raise CodedError("robot_file.no_tip", tip=shown(tip), names=names)
-        if not tip:
-            check_limbs(self._places)
-        names = [self._places[i].name for i in suggested_tips(self._places)]
-        found = [tip, *(name for name in names if name != tip)] if tip else names
-        return tuple(found[:MOST_TIPS])
+        return suggested_tips(self._places, tip)
 
     def _tree(self) -> list[TipPlace]:
         """The links, parents before children."""
@@ -186,12 +178,8 @@ class _Tree:
                 held[name] = "robot_file.guessed_mimic"
             elif not _is_still(joint):
                 moving.append(name)
-        if len(moving) > MOST_JOINTS:
-            tip = next(i for i, place in enumerate(self._places) if place.name == self._tip)
-            kept = limb_joints(self._places, tip, MOST_JOINTS)
-            many = [name for name in moving if name not in kept]
-            held |= dict.fromkeys(many, "robot_file.guessed_many")
-        return held
+        many = surplus_joints(self._places, self._tip, moving, MOST_JOINTS)
+        return held | dict.fromkeys(many, "robot_file.guessed_many")
 
     def remarks(self) -> Iterator[Message]:
         """What is left out or unusual."""
@@ -204,18 +192,13 @@ class _Tree:
         """What the file does not say."""
         options = self._options
         if not options.tip and [n for n in self._links if n not in self._after] != [self._tip]:
-            yield tip_guess(self._tip)
-        for code in dict.fromkeys(self._held.values()):
-            names = [name for name, why in self._held.items() if why == code]
-            yield locked_guess(code, names, options.pose)
+            yield guessed_tip(self._tip)
         off = [
             name
             for name, joint in self._joints.items()
-            if name not in {*self._way, *options.lock, *options.pose}
-            and joint.text("type") not in STILL
+            if name not in self._way and joint.text("type") not in STILL
         ]
-        if off:
-            yield locked_guess("robot_file.guessed_off", off, {})
+        yield from locked_guesses(self._held, off, options)
         free = [
             name
             for name, joint in self._way.items()
@@ -228,12 +211,6 @@ class _Tree:
         for name in self._folders.missing[:MOST_NAMES]:
             message = Message("robot_file.guessed_package", {"package": shown(name)})
             yield Guess("package", message, f"--package {shlex.quote(safe_name(name))}=FOLDER")
-
-    def _check_names(self) -> None:
-        for name in (*self._options.lock, *self._options.pose):
-            if name not in self._joints:
-                names = ", ".join(self._joints)
-                raise CodedError("robot_file.no_joint", joint=shown(name), names=names)
 
     def chain(self) -> tuple[Chain, Masses]:
         """The moving bodies, from the base to the tip, and what is guessed of their masses."""
@@ -391,7 +368,7 @@ def _named(root: Element, tag: str, most: int) -> dict[str, Element]:
 
 
 def _refuse_xacro(root: Element) -> None:
-    """Refuse what xacro would have replaced; what it has left behind, or only looks, is ignored."""
+    """Refuse what xacro would have replaced, except in its own leftovers and in what is drawn."""
     for element in (root, *root.children):
         if element.tag.startswith("xacro:") and element.tag not in ("xacro:property", "xacro:arg"):
             raise FileFault(element, Message("robot_file.xacro"))

@@ -22,7 +22,7 @@ from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import robot_named
 from onpath.models.systems.chain_robot import chain_entry
 from onpath.models.systems.efforts import exceeded
-from onpath.models.systems.file_chain import tip_guess
+from onpath.models.systems.file_chain import guessed_tip
 from onpath.models.systems.robots import RobotEntry
 from onpath.models.systems.xml_elements import shown
 from tests.support.guessed_robot import in_catalogue
@@ -58,7 +58,7 @@ def named(name: str) -> RobotEntry:
         label=shown(name),
         text=f"3 joints, from {shown(name)}.",
         chain=dataclasses.replace(source.chain, bodies=bodies),
-        guesses=(tip_guess(name),),
+        guesses=(guessed_tip(name),),
     )
     return chain_entry(changed)
 
