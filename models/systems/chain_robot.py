@@ -10,18 +10,18 @@ all weights, and by the payload, which it does not know. M and c are linear in t
 whose tip can only move in a plane has p = 2 outputs, others p = 3. With more joints than outputs it
 is redundant, and holds a posture by
 
-    u0 = c + D v - M N (k_d v + k_p (q - q_home)),   N = 1 - A J^T (J A J^T)⁻¹ J,   A = (M + B)⁻¹,
+    u0 = c + D v - M N (k_d v + k_p (q - q_home)),   N = 1 - A J^T (J A J^T)⁻¹ J,   A = (M + E)⁻¹,
 
 which does not move the end-point: J N = 0. Where the spring is at rest, the joints are as near home
-as the end-point allows, with the weight M + B. By M alone, the light joints of a wrist would go
-farthest, and to their stops. So B makes joints heavy near the ends of their travel, which others
-then move for: with the travel w, the place -1 < s < 1 in it and a gain g,
+as the end-point allows, with the weight M + E. By M alone, the light joints of a wrist would go
+farthest, and to their stops. So E, which is diagonal, makes joints heavy near the ends of their
+travel, and others move instead: with the travel w, the place -1 < s < 1 in it and a gain g,
 
-    B_ii = g μ / w_i² s_i² / (1 - s_i²)²,   μ: the mean of M_jj w_j² at home.
+    E_ii = g μ / w_i² s_i² / (1 - s_i²)²,   μ: the mean of M_jj w_j² at home.
 
 Forces on the end-point move the joints as before, because the motion that is commanded for it is
 distributed among them by M in any case; see `linearization`. With g = 0, and for joints without
-limits, B = 0, and N takes away what `linearization` does not use.
+limits, E = 0, and N takes away what `linearization` does not use.
 
 Source of the weight: Chan and Dubey, A weighted least-norm solution based scheme for avoiding joint
 limits for redundant joint manipulators, IEEE Transactions on Robotics and Automation 11 (1995),
@@ -80,6 +80,7 @@ FASTEST_DECAY = 2500.0  # [1/s], of friction, which one Runge-Kutta step of 1 ms
 MOST_STEPS = 2
 AT_END = 1e-3  # least 1 - s², beside and beyond the ends of a joint's travel
 POSTURE = ("posture_stiffness", "posture_damping", "limit_avoidance")
+"""Gains of the posture, of which a chain has those that are among its parameters."""
 SUBSCRIPTS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 
 
@@ -161,7 +162,7 @@ def _limit_avoidance() -> float:
         3.0,
         "",
         (0, 10, 0.1),
-        "how much a joint near the end of its travel is spared, where others can move instead"
+        "how strongly a joint is kept off the ends of its travel, where others can move instead"
         " without moving the end-point; 0: not at all",
         group="robot",
         label="Limit avoidance",
@@ -170,14 +171,14 @@ def _limit_avoidance() -> float:
 
 @dataclass(frozen=True, slots=True)
 class LimitedPlanarParameters(RedundantPlanarParameters):
-    """Parameters of such a chain whose joints have limits."""
+    """Parameters of a redundant chain in a plane with a joint that has limits."""
 
     limit_avoidance: float = _limit_avoidance()
 
 
 @dataclass(frozen=True, slots=True)
 class LimitedSpatialParameters(RedundantSpatialParameters):
-    """Parameters of such a chain whose joints have limits."""
+    """Parameters of a redundant chain in space with a joint that has limits."""
 
     limit_avoidance: float = _limit_avoidance()
 
@@ -187,14 +188,14 @@ def parameters_of(source: ChainSource) -> type[ChainParameters]:
     planar = len(source.axes) == 2
     if not source.redundant:
         return ChainParameters if planar else SpatialChainParameters
-    if _avoids(source):
+    if any(joint.high - joint.low < math.inf for joint in source.chain.joints):
         return LimitedPlanarParameters if planar else LimitedSpatialParameters
     return RedundantPlanarParameters if planar else RedundantSpatialParameters
 
 
-def _avoids(source: ChainSource) -> bool:
-    """Whether it keeps joints off the ends of their travel."""
-    return source.redundant and any(j.high - j.low < math.inf for j in source.chain.joints)
+def _gains(kind: type[ChainParameters]) -> tuple[str, ...]:
+    """The names of `POSTURE` among the parameters of a chain."""
+    return tuple(name for name in POSTURE if hasattr(kind, name))
 
 
 def output_axes(chain: Chain) -> tuple[Point, ...]:
@@ -254,8 +255,7 @@ def chain_system(source: ChainSource) -> MechanicalSystem:
     """The equations of motion; see this module's docstring."""
     chain, n = source.chain, source.chain.n
     q, v = ca.SX.sym("q", n), ca.SX.sym("v", n)
-    names = ("inertia", "weight", "payload")
-    names += POSTURE[: 3 if _avoids(source) else 2] if source.redundant else ()
+    names = ("inertia", "weight", "payload", *_gains(parameters_of(source)))
     parameters = ca.SX.sym("parameters", len(names))
     p = dict(zip(names, ca.vertsplit(parameters), strict=True))
     frames = chain_frames(chain, q)
@@ -268,7 +268,7 @@ def chain_system(source: ChainSource) -> MechanicalSystem:
     posture = None
     if source.redundant:
         away = p["posture_damping"] * v + p["posture_stiffness"] * (q - ca.DM(source.home))
-        if _avoids(source):
+        if "limit_avoidance" in p:
             heavier = mass + ca.diag(p["limit_avoidance"] * _spared(source, q))
             away = _beside(ca.jacobian(output, q), heavier, away)
         posture = bias - mass @ away
@@ -301,7 +301,7 @@ def _beside(jacobian: ca.SX, weight: ca.SX, motion: ca.SX) -> ca.SX:
 
 
 def _spared(source: ChainSource, q: ca.SX) -> ca.SX:
-    """The diagonal of B for g = 1, (n, 1); see this module's docstring."""
+    """The diagonal of E for g = 1, (n, 1); see this module's docstring."""
     low, high = source.chain.limits
     limited = [i for i in range(source.chain.n) if high[i] - low[i] < math.inf]
     inertias, widths = _inertias_at_home(source)[limited], (high - low)[limited]
@@ -335,18 +335,19 @@ def chain_robot(source: ChainSource) -> Robot:
     system, chain = chain_system(source), source.chain
     jacobian = ca.jacobian(system.output, system.q)
     kind = parameters_of(source)
+    gains = _gains(kind)
     reached = ca.Function("reached", [system.q], [system.output, ca.densify(jacobian)])
 
     def plant(parameters: Parameters) -> Array:
         chosen = own_parameters(kind, parameters)
         values = {"inertia": 1.0, "weight": 1.0, "payload": chosen.payload}
-        return system.parameter_vector(values | _posture(chosen))
+        return system.parameter_vector(values | {name: getattr(chosen, name) for name in gains})
 
     def model(parameters: Parameters) -> Array:
         chosen = own_parameters(kind, parameters)
         inertia, weight = 1 + chosen.error_inertia / 100, 1 + chosen.error_gravity / 100
         values = {"inertia": inertia, "weight": weight, "payload": 0.0}
-        return system.parameter_vector(values | _posture(chosen))
+        return system.parameter_vector(values | {name: getattr(chosen, name) for name in gains})
 
     def inverse(y: ca.SX) -> ca.SX:
         q = ca.SX(ca.DM(source.home))
@@ -409,12 +410,6 @@ def _limit_stops(chain: Chain, q: ca.SX) -> tuple[StopCondition, ...]:
         return Message("stop.joint", {"joint": shown(joint.name), "limit": unit})
 
     return () if beyond.is_zero() else (StopCondition(beyond, limit_passed),)
-
-
-def _posture(parameters: ChainParameters) -> dict[str, float]:
-    """The gains of the posture, if the robot is redundant."""
-    names = [name for name in POSTURE if hasattr(parameters, name)]
-    return {name: getattr(parameters, name) for name in names}
 
 
 def _reach(chain: Chain) -> float:

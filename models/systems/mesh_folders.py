@@ -24,6 +24,7 @@ class MeshFolders:
         kinds: endings of files that are meshes, in lower case.
 
     Attributes:
+        allowed: the folders themselves.
         missing: packages that meshes are in, but that are not known.
     """
 
@@ -35,6 +36,7 @@ class MeshFolders:
         self._own = above[at] if at is not None else None
         self._above = above[: len(above) if at is None else at + 1]
         self._packages = {name: folder.resolve() for name, folder in packages.items()}
+        self.allowed = (self._own or self._home, *self._packages.values())
         self._kinds = kinds
         self.missing = list[str]()
 
@@ -45,16 +47,12 @@ class MeshFolders:
             if path is None or path.suffix.lower() not in self._kinds:
                 return None
             path = path.resolve()
-            allowed = self._own or self._home, *self._packages.values(), *self._named(address)
+            allowed = (*self.allowed, *self._named(address))
             if not any(path.is_relative_to(folder) for folder in allowed) or not path.is_file():
                 return None
             return path if path.stat().st_size <= LARGEST_MESH else None
         except (OSError, ValueError, RuntimeError):  # not a path, or links in a circle
             return None
-
-    def allowed(self) -> tuple[Path, ...]:
-        """The folders from which files may be read."""
-        return (self._own or self._home, self._home, *self._packages.values())
 
     def folder(self, package: str) -> Path | None:
         """The folder of a package; None if it is not known."""

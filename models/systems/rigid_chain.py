@@ -28,6 +28,7 @@ import msgspec
 import numpy as np
 
 from onpath.models.arrays import Array
+from onpath.models.paths.path_design import USUAL_RADIUS
 from onpath.models.systems.drawing import Point
 from onpath.models.systems.guesses import Guess
 from onpath.models.systems.system import GRAVITY
@@ -160,7 +161,7 @@ class ChainSource:
     axes: tuple[Point, ...]
     substeps: int = 1
     guesses: tuple[Guess, ...] = ()
-    radius: float = 0.05
+    radius: float = USUAL_RADIUS
 
     @property
     def redundant(self) -> bool:

@@ -79,15 +79,18 @@ class RobotFile:
             set-up with it is not taken for another robot's.
         circle: the largest radius of circles about home that it can follow, [m].
         remarks: what has been left out or is unusual.
-        guesses: what the file does not say.
         tips: see `FileChain.tips`.
     """
 
     entry: RobotEntry
     circle: float
     remarks: tuple[Message, ...]
-    guesses: tuple[Guess, ...]
     tips: tuple[str, ...]
+
+    @property
+    def guesses(self) -> tuple[Guess, ...]:
+        """What the file does not say."""
+        return self.entry.guesses
 
 
 def read_robot(file: Path, options: Options) -> RobotFile:
@@ -165,7 +168,7 @@ def _made(file: Path, name: str, read: FileChain, pose: Mapping[str, float]) -> 
         axes=axes,
         substeps=_steps(_fastest(_masses(chain, chosen[0].q), chain, 0.0)),
     )
-    (source, circle), home = _roomy(source, chosen)
+    source, circle, home = _roomy(source, chosen)
     if circle < LEAST_CIRCLE:
         least, found = f"{1e3 * LEAST_CIRCLE:.0f}", f"{1e3 * circle:.0f}"
         raise CodedError("robot_file.circle", least=least, circle=found)
@@ -178,7 +181,6 @@ def _made(file: Path, name: str, read: FileChain, pose: Mapping[str, float]) -> 
         entry=entry,
         circle=circle,
         remarks=read.remarks,
-        guesses=guesses,
         tips=read.tips,
     )
 
@@ -209,18 +211,15 @@ def _homes(chain: Chain, axes: tuple[Point, ...], pose: Mapping[str, float]) -> 
     return found
 
 
-def _roomy(
-    source: ChainSource, poses: list[ChosenPose]
-) -> tuple[tuple[ChainSource, float], ChosenPose]:
+def _roomy(source: ChainSource, poses: list[ChosenPose]) -> tuple[ChainSource, float, ChosenPose]:
     """The first pose around which circles are large enough, or the one with the largest, [m]."""
-    enough, best = ENOUGH * length_of(source.chain), list[tuple[ChainSource, float]]()
+    tried = list[tuple[ChainSource, float, ChosenPose]]()
     for pose in poses:
         here = replace(source, home=tuple(pose.q.tolist()))
-        best.append((here, reachable_circle(chain_robot(here))))
-        if best[-1][1] >= enough:
-            return best[-1], pose
-    k = max(range(len(poses)), key=lambda i: best[i][1])
-    return best[k], poses[k]
+        tried.append((here, reachable_circle(chain_robot(here)), pose))
+        if tried[-1][1] >= ENOUGH * length_of(source.chain):
+            break
+    return max(tried, key=lambda each: each[1])
 
 
 def _pose_guess(chain: Chain, home: ChosenPose, pose: Mapping[str, float]) -> Iterator[Guess]:

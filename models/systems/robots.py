@@ -15,6 +15,7 @@ import numpy as np
 from onpath.models.arrays import Array
 from onpath.models.errors import Message
 from onpath.models.paths.frames import Frame, Plane
+from onpath.models.paths.path_design import USUAL_RADIUS
 from onpath.models.systems.drawing import Drawing
 from onpath.models.systems.forces import Grip
 from onpath.models.systems.guessed_numbers import guess_sentences
@@ -109,7 +110,7 @@ class Robot:
     grip: Grip = _GRIP
     shared: Robot | None = None
     chain: Chain | None = None
-    radius: float = 0.05
+    radius: float = USUAL_RADIUS
 
     @property
     def name(self) -> str:

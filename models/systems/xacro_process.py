@@ -62,7 +62,7 @@ def expanded(file: Path, packages: Mapping[str, Path]) -> bytes:
     except (ProcessEnded, msgspec.MsgspecError):
         raise CodedError("robot_file.xacro_ended", file=file.name) from None
     if found.fault or len(found.text) > LARGEST_FILE:
-        reason = shown(" ".join(found.fault.split()) or "1 MB", 200)
+        reason = shown(" ".join(found.fault.split()) or "it makes more than 1 MB", 200)
         raise CodedError("robot_file.xacro_refused", file=file.name, reason=reason)
     return found.text.encode()
 
@@ -79,7 +79,7 @@ def _answer(job: bytes) -> bytes:
         find = partial(_found, folders)
         arguments._eval_find = arguments._eval_dict["find"] = find
         os.environ.clear()
-        guard(folders.allowed())
+        guard(folders.allowed)
         text = xacro.process_file(asked.file).toprettyxml(indent=" ")
         answer = XacroAnswer(text=text)
     except SystemExit:
