@@ -1177,7 +1177,7 @@ parameter-posture_stiffness-help = Feder, die die Gelenke zur Ausgangsstellung z
 parameter-posture_damping-label = Haltungsdämpfer
 parameter-posture_damping-help = Dämpfer der Gelenkbewegung, die die Spitze nicht bewegt; 0: keiner
 parameter-limit_avoidance-label = Abstand von Anschlägen
-parameter-limit_avoidance-help = wie sehr ein Gelenk nahe dem Ende seines Wegs geschont wird, wo sich stattdessen andere bewegen können, ohne dass sich die Spitze bewegt; 0: gar nicht
+parameter-limit_avoidance-help = wie sehr ein Gelenk vom Ende seines Wegs ferngehalten wird, wo sich stattdessen andere bewegen können, ohne dass sich die Spitze bewegt; 0: gar nicht
 
 parameter-payload-label = Last
 parameter-payload-help = Masse an der Spitze; der Regler weiß nichts davon, und sein Integral hebt nicht mehr, als sonst 10 mm tief hinge
@@ -1777,7 +1777,7 @@ robot_file-guessed_package = Netze liegen im Paket { $package }, das nicht bekan
 robot_file-guessed_mass = die Datei nennt für manche Körper keine Masse: Sie gelten als Körper mit { $density } kg/m³, zusammen { $mass } kg: { $names }
 robot_file-guessed_mass_without = die Datei nennt für manche Körper keine Masse, und ein Paket, das ihre Netze liest, ist nicht installiert: Sie gelten als Körper mit { $density } kg/m³, zusammen { $mass } kg: { $names }
 robot_file-guessed_inertia = die Datei nennt Massen, aber ihre Trägheit nicht: Sie gelten als volle Körper: { $names }
-robot_file-repaired = die Trägheit in der Datei hat kein Körper, weil ein Hauptträgheitsmoment die Summe der anderen übersteigt; genommen wird die nächste: { $names }
+robot_file-repaired = die Trägheit in der Datei kann kein Körper haben, weil ein Hauptträgheitsmoment die Summe der anderen übersteigt; genommen wird die nächste: { $names }
 robot_file-mass_stated = eine Masse von { $mass } kg ist weniger, als die Datei für manche Körper nennt, { $stated } kg: Geben Sie mit --mass (in Python mass=…) mehr an
 robot_file-density_range = eine Dichte von { $value } kg/m³: erwartet wird mehr als 0, bis { $most }
 robot_file-mass_range = eine Masse von { $value } kg: erwartet wird mehr als 0, bis { $most }
@@ -1794,7 +1794,7 @@ robot_file-guessed_many = höchstens 8 Gelenke können sich auf dem Weg zur Spit
 robot_file-guessed_off = Gelenke abseits des Wegs zur Spitze bleiben, wo sie sind: { $names }
 robot_file-guessed_limits = Gelenke, für die die Datei keine Grenzen nennt oder beide mit 0, gelten als unbegrenzt: { $names }
 robot_file-mesh_unreadable = das Netz { $mesh } wird weggelassen: { $reason }
-robot_file-refused = <{ $element }> wird nicht gelesen, weil es andere Dateien lesen, Code ausführen oder aus einem Element viele machen kann: Lass es weg, oder lade die Datei in MuJoCo und speichere sie mit einfachen Elementen
+robot_file-refused = <{ $element }> wird nicht gelesen, weil es andere Dateien lesen, Code ausführen oder aus einem Element viele machen kann: Lassen Sie es weg, oder laden Sie die Datei in MuJoCo und speichern Sie sie mit einfachen Elementen
 robot_file-unknown = in <{ $parent }> gibt es kein solches Element
 robot_file-mesh = das Netz { $mesh } ist keine .stl-, .obj- oder .msh-Datei von bis zu 20 MB im Ordner oder Paket des Roboters (--package NAME=ORDNER; in Python packages=…)
 robot_file-meshes = die Netze haben mehr als { $most }

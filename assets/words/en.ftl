@@ -1315,7 +1315,7 @@ robot_file-elements = more than { $most } elements, or more than { $deepest } ne
 robot_file-doctype = a document type is not accepted, because it can define entities: delete it
 robot_file-xml = this is not XML: { $reason }
 robot_file-root = a robot's file begins with <robot> (URDF) or <mujoco> (MJCF)
-robot_file-xacro = this is a xacro file: let its name end with .xacro, and install xacro: pip install "onpath[xacro]"
+robot_file-xacro = this is a xacro file: give it a name that ends with .xacro, and install xacro: pip install "onpath[xacro]"
 robot_file-without = { $what } is missing
 robot_file-numbers = { $field } { $value }: expected { $count ->
     [one] a number
@@ -1369,7 +1369,7 @@ robot_file-guessed_package = meshes are in the package { $package }, which is no
 robot_file-guessed_mass = the file states no masses of some bodies: they are taken for solids of { $density } kg/m³, together { $mass } kg: { $names }
 robot_file-guessed_mass_without = the file states no masses of some bodies, and a package that reads their meshes is not installed: they are taken for solids of { $density } kg/m³, together { $mass } kg: { $names }
 robot_file-guessed_inertia = the file states masses, but no inertia of them: they are taken for solids: { $names }
-robot_file-repaired = no body has the inertia that the file states, because a principal moment exceeds the sum of the others; the nearest one is taken: { $names }
+robot_file-repaired = no body can have the inertia that the file states, because a principal moment exceeds the sum of the others; the nearest one is taken: { $names }
 robot_file-mass_stated = a mass of { $mass } kg is less than what the file states for some bodies, { $stated } kg: give more with --mass (in Python, mass=…)
 robot_file-density_range = a density of { $value } kg/m³: expected more than 0, up to { $most }
 robot_file-mass_range = a mass of { $value } kg: expected more than 0, up to { $most }

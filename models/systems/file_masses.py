@@ -45,7 +45,7 @@ class LinkMass:
         centre: of mass, [m].
         inertia: about that, (3, 3), [kg m²].
         drawn: what is drawn of it.
-        solid: what is solid of it, where nothing is drawn.
+        solid: shapes for collisions, which are weighed where nothing is drawn.
     """
 
     name: str

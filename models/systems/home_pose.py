@@ -27,8 +27,8 @@ DIRECTIONS = 48
 LEAST_RADIUS, LARGEST_CIRCLE = 0.003, 1.0  # [m]
 LEAST_SLOPE = 1e-4  # of σ_min(J) to the length, below which the tip cannot move everywhere
 RULES = ("floor", "ahead")
-"""What a chosen pose keeps to, the last one first given up: nothing is below the floor, and the tip
-is in front of the base."""
+"""What a chosen pose keeps to, the more important rule first: nothing is below the floor, and the
+tip is in front of the base."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,7 +51,7 @@ def chosen_poses(chain: Chain, axes: tuple[Point, ...], pose: dict[str, float]) 
     times the least distance from a limit, as a share of its joint's travel. A tip whose axis points
     downward is preferred. They keep to rules: joints and end-point are over the floor, which is at
     the root's origin, or at the first joint if that is lower, and the end-point is in front of the
-    first joint. Only what a joint moves is asked. For a limb that hangs from its base, such as a
+    first joint. What no joint moves does not count. For a limb that hangs from its base, such as a
     leg, the first rule is that the end-point is below it. A rule that costs too much is given up.
 
     Args:

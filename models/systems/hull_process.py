@@ -1,7 +1,7 @@
-"""The hulls of shapes as solids of density 1, found in a process of its own.
+"""The hulls of shapes as solids of density 1, found in a process of their own.
 
-This module is both ends: `hulls_of` starts it as a program. Meshes are foreign files, and libraries
-that read them may take any time.
+This module is both ends: `hulls_of` starts it as a program if there are meshes, which are foreign
+files: a library that reads them may take any time.
 """
 
 from __future__ import annotations

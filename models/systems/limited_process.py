@@ -1,7 +1,7 @@
 """Runs a library on a foreign file in a process of its own, with limits of time and memory.
 
 A file that makes a library crash, hang or take all memory must end neither a notebook nor a lab.
-This module is both ends: `answer_of` starts a module as a program, whose `main` calls `serve`.
+This module is both ends: `answer_of` starts a module as a program, and that calls `serve`.
 """
 
 from __future__ import annotations
