@@ -1,8 +1,9 @@
-"""Masses and inertias that a robot's file leaves out, or that no body has.
+"""Masses and inertias that a robot's file leaves out, or that no body can have.
 
-A body without mass is taken for the hull of what the file draws of it, of one density, or for a
-capsule from its joint to the next one. A mass without inertia, or with the one of a dummy, keeps
-its mass and gets the inertia of the same solid. An inertia is repaired if the second moments
+A body without mass is taken for the hulls of what the file draws of it, else of its shapes for
+collisions, of one density, or for a capsule from its joint to the next one. A mass without inertia,
+or with the one of a dummy, keeps its mass and gets the inertia of the same solid. An inertia is
+repaired if the second moments
 
     C = ½ tr(I) 1 - I
 

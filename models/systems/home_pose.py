@@ -145,7 +145,7 @@ def length_of(chain: Chain) -> float:
 
 
 def reachable_circle(robot: Robot) -> float:
-    """The largest radius of circles about home that the robot can follow, also smaller ones, [m].
+    """The radius up to which the robot can follow circles about home, [m]; 0: none.
 
     The margin is at least `LEAST_MARGIN` on all of the disc, up to `LARGEST_CIRCLE`.
     """

@@ -37,7 +37,7 @@ from onpath.models.systems.guesses import Guess
 from onpath.models.systems.mesh_folders import MeshFolders
 from onpath.models.systems.rigid_chain import Chain, Joint, Shape
 from onpath.models.systems.tip_guess import TipPlace, suggested_tips, surplus_joints
-from onpath.models.systems.xml_elements import Element, FileFault, safe_name, shown
+from onpath.models.systems.xml_elements import Element, FileFault, shown
 
 MOST_LINKS = 1000
 NO_LIMIT = 1e6  # [rad], [m] or [N m], from which on a limit is none
@@ -210,7 +210,7 @@ class _Tree:
             yield locked_guess("robot_file.guessed_limits", free, {})
         for name in self._folders.missing[:MOST_NAMES]:
             message = Message("robot_file.guessed_package", {"package": shown(name)})
-            yield Guess("package", message, f"--package {shlex.quote(safe_name(name))}=FOLDER")
+            yield Guess("package", message, f"--package {shlex.quote(name)}=FOLDER")
 
     def chain(self) -> tuple[Chain, Masses]:
         """The moving bodies, from the base to the tip, and what is guessed of their masses."""

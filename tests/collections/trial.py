@@ -33,7 +33,7 @@ class Verdict:
 
     Attributes:
         verdict: "runs", "refused", or what went wrong.
-        detail: the reason, or what the robot is.
+        detail: why the file is refused.
         joints: that move its tip.
         reach: its length from the first joint, [m].
         circle: the largest circle about home, [m].
