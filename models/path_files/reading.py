@@ -25,7 +25,7 @@ from onpath.models.path_files.placing import (
     least_radius,
     placed,
 )
-from onpath.models.path_files.stroke import UNITS, Stroke, text_of
+from onpath.models.path_files.stroke import UNITS, LineDrawing, Stroke, text_of
 from onpath.models.path_files.svg import strokes_of_svg
 from onpath.models.path_files.table import stroke_of_table
 from onpath.models.paths.curve_fit import deviation_remark, distinct
@@ -77,19 +77,55 @@ def path_of(data: bytes, name: str, placing: Placing, most: int = MOST_BYTES) ->
     Raises:
         CodedError: there is no such path; the message names the line.
     """
-    if len(data) > most:
-        raise CodedError("error.file_size", most=f"{most / 1e6:g}")
     check_placing(placing)
-    if not data.strip():
-        raise CodedError("error.file_empty")
-    head = data[:400].decode(encoding_of(data[:4]), errors="replace")
-    if len(data) <= 4 * LONGEST_TEXT and is_described(head):
+    head = _head(data, most)
+    if _is_described(data, head):
         if placing != Placing():
             raise CodedError("error.file_described")
         return _remarked(curve_from_text(text_of(data, encoding_of(data[:4]))), [])
-    strokes, remarks = _strokes(data, name, head, placing)
-    stroke, taken = _chosen(strokes, placing.part)
-    return _path(stroke, placing, [*taken, *remarks])
+    drawing = drawing_of(data, name, unit=placing.unit, most=most)
+    stroke, taken = _chosen(drawing.strokes, placing.part)
+    return _path(stroke, placing, [*taken, *drawing.remarks])
+
+
+def drawing_of(
+    data: bytes, name: str, *, unit: str | None = None, most: int = MOST_BYTES
+) -> LineDrawing:
+    """The lines in the content of a file, in the order in which they are drawn.
+
+    Args:
+        name: of the file; its ending tells G-code.
+        unit: of the numbers in the file, see `Placing`.
+        most: largest size, [B].
+
+    Raises:
+        CodedError: there are none, or the file describes a path in words; the message names the
+            line.
+    """
+    head = _head(data, most)
+    if _is_described(data, head):
+        raise CodedError("error.file_described")
+    strokes, remarks = _strokes(data, name, head, unit)
+    if not strokes:
+        raise CodedError("error.file_no_line")
+    return LineDrawing(tuple(strokes), tuple(remarks))
+
+
+def _head(data: bytes, most: int) -> str:
+    """The beginning of a file.
+
+    Raises:
+        CodedError: the file is too large or empty.
+    """
+    if len(data) > most:
+        raise CodedError("error.file_size", most=f"{most / 1e6:g}")
+    if not data.strip():
+        raise CodedError("error.file_empty")
+    return data[:400].decode(encoding_of(data[:4]), errors="replace")
+
+
+def _is_described(data: bytes, head: str) -> bool:
+    return len(data) <= 4 * LONGEST_TEXT and is_described(head)
 
 
 def path_through(points: Array, placing: Placing) -> ImportedPath:
@@ -165,24 +201,24 @@ def check_placing(placing: Placing) -> None:
 
 
 def _strokes(
-    data: bytes, name: str, head: str, placing: Placing
+    data: bytes, name: str, head: str, unit: str | None
 ) -> tuple[Sequence[Stroke], list[Message]]:
     """The lines of a file, and a remark on what has no effect."""
     if name.lower().endswith(".svg") or head.lstrip("\ufeff \t\r\n").startswith("<"):
-        return _in_units(strokes_of_svg(data), placing, UNITS["px"]), []
+        return _in_units(strokes_of_svg(data), unit, UNITS["px"]), []
     if name.lower().endswith(GCODE) or _GCODE.match(head):
         text = text_of(data, encoding_of(data[:4]))
         strokes, words = strokes_of_gcode(text)
         remark = Message("say.gcode_words", {"words": ", ".join(words)})
-        return _in_units(strokes, placing, UNITS["mm"]), [remark] if words else []
-    return [stroke_of_table(data, placing.unit)], []
+        return _in_units(strokes, unit, UNITS["mm"]), [remark] if words else []
+    return [stroke_of_table(data, unit)], []
 
 
-def _in_units(strokes: list[Stroke], placing: Placing, usual: float) -> list[Stroke]:
+def _in_units(strokes: list[Stroke], unit: str | None, usual: float) -> list[Stroke]:
     """The strokes in the unit that the user gives, instead of the usual one, [m]."""
-    if placing.unit is None:
+    if unit is None:
         return strokes
-    factor = UNITS[placing.unit] / usual
+    factor = UNITS[unit] / usual
     return [replace(stroke, points=factor * stroke.points) for stroke in strokes]
 
 
@@ -192,8 +228,6 @@ def _chosen(strokes: Sequence[Stroke], part: int | None) -> tuple[Stroke, list[M
     Raises:
         CodedError: there is no such line.
     """
-    if not strokes:
-        raise CodedError("error.file_no_line")
     if part is not None:
         if not 1 <= part <= len(strokes):
             raise CodedError("error.file_part", part=str(part), count=len(strokes))

@@ -1,4 +1,4 @@
-"""One line of a file before it becomes a path, units of length, and limits of files."""
+"""The lines of a file before they become a path, units of length, and limits of files."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from types import MappingProxyType
 import numpy as np
 
 from onpath.models.arrays import Array
-from onpath.models.errors import CodedError
+from onpath.models.errors import CodedError, Message
 
 UNITS: Mapping[str, float] = MappingProxyType(
     {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 0.0254, "pt": 0.0254 / 72, "px": 0.0254 / 96}
@@ -41,6 +41,20 @@ class Stroke:
         """The sum of the distances of its points, [m]."""
         with np.errstate(over="ignore"):
             return float(np.linalg.norm(np.diff(self.points, axis=0), axis=1).sum())
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LineDrawing:
+    """The lines of a file.
+
+    Attributes:
+        strokes: the lines in the order in which they are drawn, at least one, [m]; between them
+            the pen is raised.
+        remarks: what the user should know about them.
+    """
+
+    strokes: tuple[Stroke, ...]
+    remarks: tuple[Message, ...] = ()
 
 
 def drawn_stroke(points: list[tuple[float, float]] | Array, name: str) -> Stroke:
