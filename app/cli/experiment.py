@@ -35,7 +35,8 @@ class ExperimentCommand:
     ...", "implicit EXPRESSION" (of z1 and z2, 0 on the path; followed by its distance, or with
     --set across=level_set by the expression), or JSON with points; in metres. Or @FILE with such a
     text, points (CSV), a drawing (SVG) or G-code, and perhaps options: "@logo.svg fit=0.1
-    centre=0,0.01 corners=round radius=0.01 nearest"; also scale=, unit=mm, part=2, open, closed."""
+    centre=0,0.01 corners=round radius=0.01 nearest"; also scale=, turn=90, unit=mm,
+    part=1,3, layer=2, open, closed."""
     law: Repeated = ()
     """A law: a name; all; both (trajectory_tracking and path_following); or one of your own, as
     "across = -K1*xi - K2*dxi; along = -K5*(dtheta - speed)", or in a Python file, my_law.py:Name.

@@ -37,7 +37,9 @@ def path_from(
     corners: str = SMOOTH,
     radius: float = RADIUS,
     closed: bool | None = None,
-    part: int | None = None,
+    part: int | Sequence[int] | None = None,
+    layer: str | int | None = None,
+    turn: float = 0.0,
 ) -> Curve:
     """A path from a file: points (CSV), a drawing (SVG) or G-code.
 
@@ -60,7 +62,10 @@ def path_from(
         corners: "smooth", or "round" to put arcs in the place of corners first.
         radius: of these arcs, [m].
         closed: whether the end is joined to the beginning; None: as the file says, else closed.
-        part: number of the line in a file with several, from 1; None: the longest.
+        part: number of the line in a file with several, from 1, or numbers; None: the longest.
+        layer: number of a print's layer, from 1, or name of a drawing's layer; None: the first of
+            a print, all of a drawing.
+        turn: angle by which it is turned anticlockwise, [degrees].
 
     Raises:
         ValueError: there is no path in the file; the message names the line.
@@ -85,7 +90,9 @@ def path_from(
         corners=corners,
         radius=radius,
         closed=closed,
-        part=part,
+        part=(part,) if isinstance(part, int) else None if part is None else (*part,),
+        layer=None if layer is None else str(layer),
+        turn=turn,
     )
     read = path_in(user_file(file), placing)
     for remark in read.remarks:

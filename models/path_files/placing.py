@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import inf
 
@@ -34,7 +35,10 @@ class Placing:
         corners: "smooth", or "round" for arcs of a radius in the place of corners.
         radius: of these arcs, [m].
         closed: whether its end is joined to its beginning; None: as the file says, else closed.
-        part: number of the line in a file with several, from 1; None: the longest.
+        part: numbers of the wanted lines in a file with several, from 1; None: the longest.
+        layer: number of a print's layer, from 1, or name of a drawing's layer; None: the first of
+            a print, all of a drawing.
+        turn: angle by which they are turned anticlockwise, [degrees].
     """
 
     unit: str | None = None
@@ -44,29 +48,56 @@ class Placing:
     corners: str = SMOOTH
     radius: float = RADIUS
     closed: bool | None = None
-    part: int | None = None
+    part: tuple[int, ...] | None = None
+    layer: str | None = None
+    turn: float = 0.0
 
 
-def placed(stroke: Stroke, placing: Placing) -> Stroke:
-    """The line at its place in the plane, [m].
+def placed(strokes: Sequence[Stroke], placing: Placing) -> list[Stroke]:
+    """The lines at their place in the plane, [m].
 
     Raises:
-        CodedError: it is then too large, or a line without length has no size to fit.
+        CodedError: they are then too large, or without length and have no size to fit.
     """
-    points = stroke.points * placing.scale
-    low, high = points.min(0), points.max(0)
+    turned = placing.scale * _rotation(placing.turn)
+    points = [stroke.points @ turned.T for stroke in strokes]
+    low, high = _box(points)
     if placing.fit is not None:
         side = float((high - low).max())
         if not side > 0:
             raise CodedError("error.points_coincide", least=2)
-        points, low, high = (each * (placing.fit / side) for each in (points, low, high))
+        points = [placing.fit / side * each for each in points]
+        low, high = _box(points)
     if placing.fit is not None or placing.centre is not None:
-        points = points - (low + high) / 2 + np.array(placing.centre or (0.0, 0.0))
-    farthest = float(np.abs(points).max())
+        moved = np.array(placing.centre or (0.0, 0.0)) - (low + high) / 2
+        points = [each + moved for each in points]
+    farthest = max(float(np.abs(each).max()) for each in points)
     if not farthest <= LARGEST:
         raise CodedError("error.file_too_large", farthest=f"{farthest:.4g}", most=f"{LARGEST:g}")
-    closed = stroke.closed if placing.closed is None else placing.closed
-    return replace(stroke, points=points, closed=closed)
+    return [
+        replace(
+            stroke,
+            points=each,
+            closed=stroke.closed if placing.closed is None else placing.closed,
+        )
+        for stroke, each in zip(strokes, points, strict=True)
+    ]
+
+
+def _rotation(degrees: float) -> Array:
+    """The matrix of a turn, exact for quarters of a turn, shape (2, 2)."""
+    quarters, rest = divmod(degrees, 90)
+    angle = np.deg2rad(rest)
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    return np.linalg.matrix_power(np.array([[0.0, -1.0], [1.0, 0.0]]), int(quarters) % 4) @ turn
+
+
+def _box(points: Sequence[Array]) -> tuple[Array, Array]:
+    """The corners of the box around lines, shapes (2,)."""
+    return (
+        np.min([each.min(0) for each in points], axis=0),
+        np.max([each.max(0) for each in points], axis=0),
+    )
 
 
 def curve_of(stroke: Stroke, placing: Placing) -> Curve:

@@ -2,7 +2,7 @@
 
 @points.csv                      a path in a file
 @logo.svg fit=0.1 corners=round  with options, see `Placing`
-@plate.nc scale=0.5 centre=0,0.01 part=2 open
+@plate.nc scale=0.5 centre=0,0.01 part=2,3 turn=90 open
 """
 
 from __future__ import annotations
@@ -37,6 +37,7 @@ from onpath.models.systems.parameter_specs import unknown_name
 MOST_BYTES = 20_000_000
 GCODE = (".nc", ".gcode", ".ngc", ".gc", ".tap", ".cnc", ".g")
 NUMBERS = ("scale", "fit", "radius")
+MOST_PARTS = 1000
 WORDS = ("open", "closed")
 _GCODE = re.compile(r"\s*(%|[NO]\d+|[GMT]\s*\d|[;(])", re.IGNORECASE)
 
@@ -84,7 +85,8 @@ def path_of(data: bytes, name: str, placing: Placing, most: int = MOST_BYTES) ->
             raise CodedError("error.file_described")
         return _remarked(curve_from_text(text_of(data, encoding_of(data[:4]))), [])
     drawing = drawing_of(data, name, unit=placing.unit, most=most)
-    stroke, taken = _chosen(drawing.strokes, placing.part)
+    chosen, taken = _chosen(drawing.strokes, placing.part)
+    stroke = max(chosen, key=lambda each: each.length)
     return _path(stroke, placing, [*taken, *drawing.remarks])
 
 
@@ -141,7 +143,7 @@ def path_through(points: Array, placing: Placing) -> ImportedPath:
 
 def _path(stroke: Stroke, placing: Placing, remarks: list[Message]) -> ImportedPath:
     """The path of a line, with the remarks on it and some more."""
-    curve = curve_of(placed(stroke, placing), placing)
+    curve = curve_of(placed([stroke], placing)[0], placing)
     if placing.corners == ROUND:
         radius = f"{1e3 * least_radius(curve):.1f}"
         remarks.append(Message("say.rounded", {"radius": radius}))
@@ -169,18 +171,19 @@ def _option(word: str) -> dict[str, object] | None:
     if not equals:
         return None
     try:
-        if name in NUMBERS:
+        if name in (*NUMBERS, "turn"):
             return {name: float(value)}
         if name == "part":
-            return {name: int(value)}
+            return {name: tuple(int(each) for each in value.split(","))}
         if name == "centre":
             first, second = value.split(",")
             return {name: (float(first), float(second))}
     except ValueError:
         raise CodedError("error.file_option", name=name, value=repr(value[:20])) from None
-    if name in ("unit", "corners"):
+    if name in ("unit", "corners", "layer"):
         return {name: value}
-    raise unknown_name(name, [*NUMBERS, "part", "centre", "unit", "corners", *WORDS], "option")
+    known = [*NUMBERS, "turn", "part", "layer", "centre", "unit", "corners", *WORDS]
+    raise unknown_name(name, known, "option")
 
 
 def check_placing(placing: Placing) -> None:
@@ -192,6 +195,11 @@ def check_placing(placing: Placing) -> None:
     for value in placing.centre or ():
         if not abs(value) <= LARGEST:
             raise CodedError("error.file_option", name="centre", value=f"{value:g}")
+    if not abs(placing.turn) <= 360:
+        raise CodedError("error.file_option", name="turn", value=f"{placing.turn:g}")
+    parts = placing.part
+    if parts is not None and not (0 < len(parts) <= MOST_PARTS and len({*parts}) == len(parts)):
+        raise CodedError("error.file_option", name="part", value=repr(parts)[:40])
     if placing.unit is not None and placing.unit not in UNITS:
         raise unknown_name(placing.unit, list(UNITS), "unit")
     if placing.corners not in (SMOOTH, ROUND):
@@ -222,23 +230,26 @@ def _in_units(strokes: list[Stroke], unit: str | None, usual: float) -> list[Str
     return [replace(stroke, points=factor * stroke.points) for stroke in strokes]
 
 
-def _chosen(strokes: Sequence[Stroke], part: int | None) -> tuple[Stroke, list[Message]]:
-    """The line to follow, and a remark if there are others.
+def _chosen(
+    strokes: Sequence[Stroke], parts: tuple[int, ...] | None
+) -> tuple[list[Stroke], list[Message]]:
+    """The lines to follow, and a remark if there are others.
 
     Raises:
         CodedError: there is no such line.
     """
-    if part is not None:
+    for part in parts or ():
         if not 1 <= part <= len(strokes):
             raise CodedError("error.file_part", part=str(part), count=len(strokes))
-        return strokes[part - 1], []
+    if parts is not None:
+        return [strokes[part - 1] for part in parts], []
     longest = max(range(len(strokes)), key=lambda i: strokes[i].length)
     stroke = strokes[longest]
     if len(strokes) == 1:
-        return stroke, []
+        return [stroke], []
     number, count = str(longest + 1), len(strokes)
     taken = Message("say.one_of_lines", {"name": stroke.name, "part": number, "count": count})
-    return stroke, [taken]
+    return [stroke], [taken]
 
 
 def _remarked(curve: Curve, remarks: list[Message]) -> ImportedPath:

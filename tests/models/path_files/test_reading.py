@@ -255,6 +255,18 @@ def test_a_path_is_placed_and_scaled_on_request() -> None:
             assert (low + high) / 2 == pytest.approx(centre)
 
 
+@given(st.floats(-360, 360))
+def test_a_turn_turns_the_lines_about_the_centre_of_their_box(turn: float) -> None:
+    before = path_through(CORNERS, Placing(centre=(0, 0), closed=True)).curve.given
+    after = path_through(CORNERS, Placing(centre=(0.01, 0), closed=True, turn=turn)).curve.given
+    assert before is not None and after is not None
+    angle = np.deg2rad(turn)
+    turned = before @ np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+    moved = after - turned
+    assert np.abs(moved - moved[0]).max() < 1e-12
+    assert (after.min(0) + after.max(0)) / 2 == pytest.approx((0.01, 0))
+
+
 SQUARE = np.array([[0.05, 0.05], [-0.05, 0.05], [-0.05, -0.05], [0.05, -0.05]])
 
 
@@ -289,18 +301,28 @@ def test_of_several_lines_the_longest_is_taken_and_told() -> None:
         found.curve.series, read(TOOL, "a.nc").curve.series
     )
     assert "Of 2 lines" in str(found.remarks[0])
-    small = read(two, "a.nc", part=2).curve
+    small = read(two, "a.nc", part=(2,)).curve
     assert small.length() == pytest.approx(circle(0.01).length(), rel=1e-3)
     with pytest.raises(CodedError, match="part 3: the file has 2 lines"):
-        read(two, "a.nc", part=3)
+        read(two, "a.nc", part=(3,))
 
 
 def test_options_follow_the_name_of_a_file_that_may_have_blanks() -> None:
-    file, placing = read_reference("my logo.svg fit=0.1 centre=0,-0.01 corners=round open part=2")
+    file, placing = read_reference(
+        "my logo.svg fit=0.1 centre=0,-0.01 corners=round open part=2,1 turn=-45 layer=3"
+    )
     assert file == Path("my logo.svg")
-    assert placing == Placing(fit=0.1, centre=(0, -0.01), corners="round", closed=False, part=2)
+    assert placing == Placing(
+        fit=0.1, centre=(0, -0.01), corners="round", closed=False, part=(2, 1), turn=-45, layer="3"
+    )
     assert read_reference("a b = c.csv")[0] == Path("a b = c.csv")
-    for wrong in ("a.csv fit=big", "a.csv siz=3", "a.csv part=x", "a.csv centre=1"):
+    for wrong in (
+        "a.csv fit=big",
+        "a.csv siz=3",
+        "a.csv part=x",
+        "a.csv part=1,",
+        "a.csv centre=1",
+    ):
         with pytest.raises(ValueError, match=r"fit|scale|part|centre|option"):
             read_reference(wrong)
 
@@ -392,7 +414,8 @@ def test_a_drawing_of_many_corners_is_not_rounded_one_by_one() -> None:
     "options",
     [
         {"scale": 0.0}, {"scale": np.nan}, {"fit": -1.0}, {"fit": np.inf}, {"unit": "parsec"},
-        {"corners": "sharp"}, {"centre": (np.nan, 0.0)}, {"radius": 0.02}, {"part": 0},
+        {"corners": "sharp"}, {"centre": (np.nan, 0.0)}, {"radius": 0.02}, {"part": (0,)},
+        {"part": (1, 1)}, {"turn": np.nan},
     ],
 )  # fmt: skip
 def test_impossible_options_are_refused(options: dict[str, Any]) -> None:
