@@ -190,6 +190,7 @@ def robots_by_name(tree: ast.AST) -> list[str]:
     ]
 
 
+@pytest.mark.thorough
 def test_no_test_makes_an_exception_for_a_robot_by_its_name() -> None:
     """A law for every robot asks what kind it is: a new one may be of that kind, too."""
     files = sorted((ROOT / "tests").rglob("*.py"))
@@ -264,6 +265,7 @@ def private_parts(tree: ast.AST) -> list[str]:
     return [*modules, *subclasses, *foreign_private_names(tree, names_of_viser())]
 
 
+@pytest.mark.thorough
 def test_only_the_adapter_uses_private_parts_of_viser() -> None:
     def touched(file: Path) -> list[str]:
         folder = folder_of(module_of(file))

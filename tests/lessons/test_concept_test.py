@@ -95,6 +95,7 @@ def test_a_test_has_questions_only(tmp_path: Path) -> None:
             read_lesson(file)
 
 
+@pytest.mark.thorough
 def test_a_course_may_have_a_test_of_its_own_or_none(tmp_path: Path) -> None:
     (tmp_path / FOLDER).mkdir()
     (tmp_path / FOLDER / "en.md").write_text(FRONT + ITEM, "utf-8")

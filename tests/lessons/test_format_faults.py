@@ -174,6 +174,7 @@ def test_a_second_task_with_an_id_is_named(tmp_path: Path) -> None:
     assert line > LESSON.count("\n")
 
 
+@pytest.mark.thorough
 def test_a_lesson_with_all_of_the_format_is_read(tmp_path: Path, capsys: Capture) -> None:
     file = write_lesson(tmp_path, FORMAT_LESSON, FORMAT_REFERENCE)
     assert run_command(["lessons", "check", str(tmp_path)]) == 0

@@ -45,6 +45,7 @@ ACTS = st.one_of(
 )
 
 
+@pytest.mark.thorough
 @settings(max_examples=300, deadline=None)
 @given(st.lists(ACTS, max_size=30))
 def test_a_file_is_whole_or_refused_and_never_larger_than_announced(acts: list[Any]) -> None:

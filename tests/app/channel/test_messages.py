@@ -147,6 +147,7 @@ VALUES |= {
 STATES = st.fixed_dictionaries(VALUES)
 
 
+@pytest.mark.thorough
 @settings(max_examples=50, deadline=None)
 @given(STATES, STATES, st.lists(st.sets(st.sampled_from(sorted(VALUES)))))
 def test_a_page_that_is_told_changes_knows_everything(

@@ -92,6 +92,7 @@ FILES = {
 }
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", FILES)
 def test_a_path_of_another_program_is_the_same_in_every_command(
     name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -131,6 +132,7 @@ def test_what_cannot_be_followed_is_told_and_the_nearest_path_is_taken_if_asked_
     assert f"@{file}: line 3, column 1: 'G41' is not read" in capsys.readouterr().err
 
 
+@pytest.mark.thorough
 def test_a_figure_of_a_robot_from_a_file_is_exported(tmp_path: Path) -> None:
     file, page = tmp_path / "own.urdf", tmp_path / "own.html"
     file.write_text(urdf("own", PLANAR), "utf-8")

@@ -83,6 +83,7 @@ OPTIONS = [
 ]
 
 
+@pytest.mark.thorough
 @settings(max_examples=40, deadline=None)
 @given(st.sampled_from(OPTIONS), st.booleans(), st.booleans())
 def test_an_option_is_taken_once_and_appended_or_refused_twice(

@@ -28,6 +28,7 @@ def process() -> Iterator[ExportProcess]:
     process.stop()
 
 
+@pytest.mark.thorough
 def test_a_file_from_the_process_is_the_same_to_the_byte(process: ExportProcess) -> None:
     simulation = new_lab(0.4).simulation
     made = process.call(
@@ -97,6 +98,7 @@ def test_calls_of_many_threads_wait_for_each_other(process: ExportProcess) -> No
     assert sorted(found) == list(range(8))
 
 
+@pytest.mark.thorough
 def test_an_idle_process_is_ended_and_started_again() -> None:
     process = ExportProcess(idle=0.0)
     assert process.pid is None  # nothing is started before it is needed

@@ -64,6 +64,7 @@ def eventful() -> tuple[Lab, list]:
     return lab, seen
 
 
+@pytest.mark.thorough
 def test_replay_is_what_was_simulated_to_the_last_bit() -> None:
     lab, seen = eventful()
     runs = replayed(lab.simulation)
@@ -102,6 +103,7 @@ def test_two_kilohertz_gives_whole_milliseconds() -> None:
         assert len(trajectory.t) == 200
 
 
+@pytest.mark.thorough
 def test_csv_tells_the_distance_to_the_path_as_it_was() -> None:
     lab, _ = eventful()
     columns = read_csv(

@@ -100,6 +100,7 @@ def test_a_page_stops_a_robot_where_the_lab_does(robot: str) -> None:
     assert typed[code - 1].code == "stop.typed_law"
 
 
+@pytest.mark.thorough
 def test_a_page_is_small_the_same_every_time_and_names_no_other_place(tmp_path: Path) -> None:
     page = figure_page(chosen("five_bar", paths=CURVES), ENGLISH)
     assert page == figure_page(chosen("five_bar", paths=CURVES), ENGLISH)
@@ -112,6 +113,7 @@ def test_a_page_is_small_the_same_every_time_and_names_no_other_place(tmp_path: 
 LARGEST_PAGE = "flexible"
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     "robot",
     some(
@@ -136,6 +138,7 @@ def test_texts_of_the_author_are_texts(tmp_path: Path) -> None:
     assert [*map(unescape, shown)] == [title, title]
 
 
+@pytest.mark.thorough
 def test_a_page_has_one_heading_and_says_what_it_is() -> None:
     """Whether its author gives a title or not."""
     for title in ("", "Mine"):
@@ -176,6 +179,7 @@ def test_what_cannot_be_a_figure_is_refused_in_a_line(
     assert run_command(["figure", str(tmp_path / "no" / "a.html")]) == 2
 
 
+@pytest.mark.thorough
 def test_paths_may_be_read_from_files(tmp_path: Path) -> None:
     oval, file = tmp_path / "My oval.txt", tmp_path / "a.html"
     oval.write_text("ellipse 0.06 0.03", "utf-8-sig")
@@ -185,6 +189,7 @@ def test_paths_may_be_read_from_files(tmp_path: Path) -> None:
     assert file.read_bytes() == onpath.figure(path=named).save(tmp_path / "b.html").read_bytes()
 
 
+@pytest.mark.thorough
 def test_one_law_and_paths_of_one_s_own() -> None:
     paths = {"my oval": onpath.ellipse(0.06, 0.03), "line": "segment"}
     law = "across = -K1*xi - K2*dxi; along = 9*(5 - dtheta)"

@@ -165,6 +165,7 @@ def test_going_on_from_the_past_is_the_run_that_would_have_been(page: NodePage) 
     assert page.evaluate("document.querySelector('.transport .past').hidden")
 
 
+@pytest.mark.thorough
 def test_a_lens_shows_what_there_is_to_see_at_each_size_of_error(page: NodePage) -> None:
     """Everything is within the glass, and small errors are seen from near."""
     steps, used = {1.5, 3, 6, 12, 20}, (set[float](), set[float]())

@@ -56,6 +56,7 @@ def test_a_run_without_guesses_has_no_marks() -> None:
     assert run.guesses == () and "guessed" not in repr(run)
 
 
+@pytest.mark.thorough
 def test_the_csv_marks_its_columns_and_is_read_all_the_same(
     run: onpath.Run, entry: RobotEntry, tmp_path: Path
 ) -> None:

@@ -125,6 +125,7 @@ def test_the_arena_has_no_elements_of_a_name(entry: RobotEntry) -> None:
     assert len(lines) < 12
 
 
+@pytest.mark.thorough
 def test_runs_files_and_pictures_are_made(entry: RobotEntry, tmp_path: Any) -> None:
     run = onpath.simulate(entry, duration=0.02)
     run.to_csv(tmp_path / "run.csv")

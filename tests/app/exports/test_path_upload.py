@@ -103,6 +103,7 @@ def test_a_hostile_file_is_refused_in_words_and_the_next_one_is_read(case: str) 
 CORNERS = b"0,0\n1,1\n0,1\n" * 11_000
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("case", ["many cubic pieces", "corners"])
 def test_what_is_dear_is_refused_long_before_the_time_is_over(case: str) -> None:
     """Within 5 s of processor time; each took more than 15 s."""
@@ -158,6 +159,7 @@ def test_a_tab_reads_one_file_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None
     assert done.wait(WAIT)
 
 
+@pytest.mark.thorough
 def test_the_lab_follows_the_path_of_a_file_and_draws_the_line_if_it_is_far() -> None:
     lab = new_lab(0.2)
     do(lab, answer(b"0,0\n4,0\n4,4\n0,4\n", "a.csv", Placing(fit=0.1, corners=ROUND, radius=0.02)))

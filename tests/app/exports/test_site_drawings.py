@@ -117,6 +117,7 @@ def test_a_bending_is_drawn_larger_as_in_the_scene() -> None:
     np.testing.assert_allclose(np.reshape(page["larger"], (-1, 2)), wanted, rtol=0, atol=TENTH)
 
 
+@pytest.mark.thorough
 def test_a_step_has_the_drawings_that_it_shows_and_switches_for_all() -> None:
     course = read_course([BUILT_IN])[0]
     lessons = [course.lesson(name, "en") for name in course.lessons]

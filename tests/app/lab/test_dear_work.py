@@ -42,6 +42,7 @@ def loop_cache() -> Iterator[LoopCache]:
     made.close()
 
 
+@pytest.mark.thorough
 @settings(deadline=None, max_examples=40)
 @given(st.integers(0, 2**32), st.integers(1, 12))
 def test_nothing_that_a_page_sends_takes_long_at_a_time(

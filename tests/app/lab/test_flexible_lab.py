@@ -175,6 +175,7 @@ def test_a_structural_change_starts_anew_and_fits_what_is_kept(name: str, value:
     np.testing.assert_allclose(total, extras(lab, "deflection")[..., 0], atol=1e-8)
 
 
+@pytest.mark.thorough
 def test_it_can_be_taken_home() -> None:
     lab = flexible(0.5)
     robot, history = lab.simulation.robot, lab.simulation.history.all()

@@ -18,6 +18,7 @@ def flexible_lab(seconds: float = 1.0) -> Lab:
     return lab
 
 
+@pytest.mark.thorough
 def test_both_robots_go_on_from_where_they_are() -> None:
     lab = flexible_lab()
     simulation = lab.simulation
@@ -79,6 +80,7 @@ def test_going_back_to_before_the_load_goes_on_with_it() -> None:
     assert set(replayed(lab.simulation)) == {FOLLOWER, TRACKER}
 
 
+@pytest.mark.thorough
 def test_a_typed_law_goes_on_too() -> None:
     lab = flexible_lab(0.2)
     do(lab, c.Set("output", "redefined"))
@@ -101,6 +103,7 @@ def test_a_robot_with_other_states_begins_anew_and_the_user_is_told(
     assert lab.simulation.time == 0 and "restarted" in lab.message
 
 
+@pytest.mark.thorough
 def test_a_load_with_another_number_of_modes_begins_anew() -> None:
     lab = flexible_lab(0.3)
     do(lab, c.Set("payload", 0.02), c.Set("modes", 2))

@@ -203,6 +203,7 @@ def test_a_share_code_of_version_1_keeps_its_physics(case: str) -> None:
         assert {name: value_of(found, name) for name in expected} == expected
 
 
+@pytest.mark.thorough
 def test_an_old_stored_lab_is_restored_and_stored_with_its_version() -> None:
     lab, kept = new_lab(), list[dict[str, Any]]()
     old = {"benches": {"five_bar": {"parameters": {"K1": 900.0}}}}
@@ -267,6 +268,7 @@ def records(tmp_path: Path) -> Records:
     return Records(file_url(file), lambda: 1.8e9)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("code", [ELLIPSE, SLOW])
 def test_a_share_code_sets_up_the_usual_laws(code: str) -> None:
     lab = new_lab()

@@ -144,6 +144,7 @@ def memory_of_a_minute(lab: Lab, one: Segment) -> tuple[int, int]:
     return sum(trace.size for trace in snapshot.filter_traces(ours).traces), peak
 
 
+@pytest.mark.thorough
 def test_older_stretches_are_fewer_and_as_exact() -> None:
     """Each goes on where the one before ends, to the last bit; a change of input parts them."""
     lab = new_lab()

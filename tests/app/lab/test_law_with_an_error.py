@@ -163,6 +163,7 @@ def test_it_is_not_chosen(loop_cache: LoopCache, laws: list[str]) -> None:
     assert lab.simulation.laws[LEFT] == "waiting_clock"
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("law", "command"),
     [

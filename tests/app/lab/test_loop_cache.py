@@ -198,6 +198,7 @@ EVERY_KIND = Script(
 )
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("late", drawn(range(1, 24), 1))
 def test_a_script_gives_the_same_bits_however_late_its_loops_come(late: int) -> None:
     ends = list[Lab]()
@@ -292,6 +293,7 @@ def test_the_next_loop_is_for_the_lab_that_has_taken_least(
     assert made == {each for keys in last.values() for each in keys}
 
 
+@pytest.mark.thorough
 def test_a_lab_that_types_without_end_does_not_hold_up_another_one(
     loop_cache: LoopCache, gate: Gate
 ) -> None:

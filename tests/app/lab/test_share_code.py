@@ -87,6 +87,7 @@ def test_a_single_wrong_character_is_noticed(setup: Setup, data: st.DataObject) 
         decode(code[:at] + wrong + code[at + 1 :])
 
 
+@pytest.mark.thorough
 def test_every_single_wrong_character_is_noticed() -> None:
     code = encode(drawn_lab())
     for at in range(len(code)):

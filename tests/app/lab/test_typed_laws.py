@@ -199,6 +199,7 @@ def test_a_set_up_of_several_lines_is_put_on_one() -> None:
     assert from_data(data).laws == {LEFT: "across = -xi; along = 1"}
 
 
+@pytest.mark.thorough
 def test_history_replay_and_files() -> None:
     lab = Lab(LOOP_CACHE)
     seen: list[tuple[float, np.ndarray]] = []
@@ -271,6 +272,7 @@ def test_lessons_take_it() -> None:
     assert_sound(lab)
 
 
+@pytest.mark.thorough
 def test_a_set_up_begins_with_it_even_if_its_loop_has_to_be_made() -> None:
     loop_cache = LoopCache()
     lab, wanted = Lab(loop_cache), "across = -K1*xi - 41*dxi; along = 1"

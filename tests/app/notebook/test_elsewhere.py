@@ -39,6 +39,7 @@ def test_the_files_would_be_noticed(folder: Path) -> None:
     assert stranger.marks(folder)
 
 
+@pytest.mark.thorough
 def test_a_simulation_is_onpaths_own(folder: Path) -> None:
     code = "import onpath; print(onpath.simulate(duration=0.05).t.size, onpath.__file__)"
     size, file = python(folder, "-c", code).split()

@@ -68,6 +68,7 @@ def test_a_figure_is_saved_whole_or_not_at_all(
     assert [each.name for each in tmp_path.iterdir()] == ["held.html"]
 
 
+@pytest.mark.thorough
 def test_another_language_costs_only_its_words(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -124,6 +125,7 @@ def test_a_run_s_figure_is_what_was_recorded_and_can_be_tried() -> None:
         runs[0].figure(onpath.simulate(path="clover", duration=0.05))
 
 
+@pytest.mark.thorough
 def test_the_page_of_a_run_says_what_the_run_had_besides(tmp_path: Path) -> None:
     place = (0.03, 0.0)
     cases: tuple[tuple[dict[str, Any], tuple[str, ...]], ...] = (

@@ -73,6 +73,7 @@ def test_an_arm_of_a_tonne_follows_its_path_with_the_torques_that_this_takes(
     assert np.abs(moved.fields["u"]).max() > 4000
 
 
+@pytest.mark.thorough
 @settings(max_examples=10)
 @given(st.sampled_from(LAWS), st.floats(1, 20), st.booleans(), st.sampled_from([0.0, 0.01]))
 def test_every_engine_gives_the_same_torques(
@@ -116,6 +117,7 @@ def test_a_run_that_asks_for_more_says_so_and_one_within_its_limits_does_not(
     assert "path following: the motor of joint2 gave" in capsys.readouterr().err
 
 
+@pytest.mark.thorough
 def test_a_comparison_says_which_law_asks_for_more_and_of_which_motor(
     heavy: RobotEntry, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:

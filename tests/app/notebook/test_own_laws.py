@@ -88,6 +88,7 @@ def test_python_keeps_its_memory_as_a_compiled_law_does_also_where_a_run_looks_a
     assert np.array_equal(runs[0].y, runs[2].y)  # each run has a memory of its own
 
 
+@pytest.mark.thorough
 def test_an_object_begins_each_run_as_it_was_given() -> None:
     law, fresh = Summed(), onpath.simulate(law=Summed, **HELD)
     runs = [onpath.simulate(law=law, **HELD) for _ in range(3)]

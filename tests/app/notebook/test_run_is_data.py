@@ -61,6 +61,7 @@ def arrays_of(run: Run) -> dict[str, Any]:
     return {name: getattr(run, name) for name in (*names, "speed", "torque", "force", "held")}
 
 
+@pytest.mark.thorough
 def test_a_run_is_read_elsewhere_without_the_files_of_its_robot_and_law(tmp_path: Path) -> None:
     made, other = tmp_path / "made", tmp_path / "other"
     made.mkdir()
@@ -157,6 +158,7 @@ def test_a_picture_that_cannot_be_written_is_refused(given: tuple[str, ...], wor
         onpath.simulate(duration=0.05).plot(3)  # type: ignore[arg-type]
 
 
+@pytest.mark.thorough
 def test_plot_takes_the_file_as_other_methods_do(tmp_path: Path) -> None:
     runs = [onpath.simulate(law=law, duration=0.1) for law in ("path_following", "contouring")]
     files = [tmp_path / name for name in ("a.svg", "b.svg", "c.svg")]
@@ -173,6 +175,7 @@ FILES = {
 }
 
 
+@pytest.mark.thorough
 @settings(max_examples=10, deadline=None)
 @given(st.lists(st.sampled_from([*FILES]), min_size=2, max_size=2))
 def test_robots_are_equal_if_they_are_made_equally(

@@ -212,6 +212,7 @@ def test_a_missing_file_is_one_kind_of_error(read: Callable[[], Any]) -> None:
         read()
 
 
+@pytest.mark.thorough
 def test_files_are_read_wherever_a_robot_a_path_or_a_law_is_given(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -305,6 +306,7 @@ def test_a_path_goes_through_its_points() -> None:
     assert end == pytest.approx([0.03, 0.02])
 
 
+@pytest.mark.thorough
 def test_pictures_and_files_are_whole_or_refused(tmp_path: Path) -> None:
     run, other = (onpath.simulate(law=law, duration=0.05) for law in LAWS)
     figure: Any = run.plot(other, file=tmp_path / "run.svg")

@@ -70,6 +70,7 @@ def test_what_contradicts_itself_is_refused(given: dict[str, Any], words: str) -
         onpath.simulate(**given)
 
 
+@pytest.mark.thorough
 def test_a_figure_names_what_no_law_of_it_uses(tmp_path: Path) -> None:
     file, circle = tmp_path / "a.html", {"path": "circle", "sliders": ()}
     with pytest.warns(UserWarning, match="no effect under trajectory tracking, .*: K4$"):

@@ -245,6 +245,7 @@ def test_only_what_changes_the_picture_has_it_built_anew(shown: Shown, course: C
         assert shown.builds == builds + 1
 
 
+@pytest.mark.thorough
 def test_a_step_switches_its_drawings_on_and_the_next_one_off(shown: Shown, course: Course) -> None:
     """What its reader has switched on stays. Where the path is edited, the mouse prefers points."""
     shown.switches.add("zone")

@@ -130,6 +130,7 @@ def test_marks_are_at_both_robots_and_go_with_their_step(shown: Shown) -> None:
     assert set(shown.follow()) == {"RemoveSceneNodeMessage"}
 
 
+@pytest.mark.thorough
 @ENTRIES
 def test_the_arrows_lead_to_the_timetable_and_to_the_path(shown: Shown) -> None:
     """With a hand at both, so that both errors are there; d is the distance that is measured."""
@@ -242,6 +243,7 @@ def test_every_preset_has_a_tube_that_can_be_drawn(name: str) -> None:
     assert ("straight" in tube_note(shape.width, ENGLISH)) == is_straight
 
 
+@pytest.mark.thorough
 def test_the_tube_of_a_rising_path_lies_around_it_in_space() -> None:
     entry = ROBOTS["spatial_arm"]
     lab = Lab(loop_cache(), entry)

@@ -80,6 +80,7 @@ def test_a_page_that_waits_for_a_place_reads_why_in_the_language_of_its_browser(
         server.stop()
 
 
+@pytest.mark.thorough
 def test_the_teachers_page_follows_the_teachers_language_whoever_is_shown() -> None:
     room, german = Classroom(), Words("de")
     server = LabServer("127.0.0.1", 0, loop_cache(), ServerOptions(classrooms=[room]))

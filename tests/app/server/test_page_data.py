@@ -196,6 +196,7 @@ def test_a_command_that_is_not_possible_is_told_in_the_pages_language(script: Sc
     assert script.read_until("state", lambda new: new["messages"] != state["messages"])
 
 
+@pytest.mark.thorough
 def test_a_page_to_which_nothing_is_told_hears_that_the_lab_lives(script: Script) -> None:
     script.read("frame")
     script.do("SetRunning", running=False)
@@ -267,6 +268,7 @@ def test_a_lab_whose_page_does_not_listen_is_told_nothing(server: LabServer, add
         assert visit.stream.opened == opened and not visit.stream.is_busy
 
 
+@pytest.mark.thorough
 def test_a_teacher_is_told_of_the_lab_that_is_shown_and_cannot_act_on_it(
     address: str, room: Classroom
 ) -> None:

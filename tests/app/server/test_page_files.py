@@ -121,6 +121,7 @@ def send(script: Script, number: int, content: bytes, **use: Any) -> dict[str, A
     return answer
 
 
+@pytest.mark.thorough
 def test_the_robots_follow_the_path_in_a_file_of_the_page(script: Script) -> None:
     assert send(script, 1, CIRCLE.encode(), size=60.0)["state"] == "used"
 

@@ -47,6 +47,7 @@ def told(student: Student, **message: object) -> str:
     return student.told["told"]["text"]
 
 
+@pytest.mark.thorough
 def test_every_sheet_comes_when_it_is_asked_for(student: Student) -> None:
     for what in get_args(SheetName):
         assert student.ask(what)["is"] == what

@@ -44,6 +44,7 @@ def cards(page: Student) -> dict[str, dict]:
     return {card["tip"]: card for card in page.ask("robots")["robots"] if card["tip"]}
 
 
+@pytest.mark.thorough
 def test_a_tip_is_built_when_it_is_chosen_and_is_there_for_all(server: LabServer) -> None:
     with student(server) as page, student(server) as other:
         for each in (page, other):
@@ -65,6 +66,7 @@ def test_a_tip_is_built_when_it_is_chosen_and_is_there_for_all(server: LabServer
         assert len(ROBOTS) == count + 1
 
 
+@pytest.mark.thorough
 def test_a_tip_that_fails_says_why_and_the_robot_stays(server: LabServer) -> None:
     with student(server) as page:
         page.open()
@@ -82,6 +84,7 @@ def test_a_tip_that_fails_says_why_and_the_robot_stays(server: LabServer) -> Non
         assert cards(page)["link3"]["is_built"] is False
 
 
+@pytest.mark.thorough
 def test_a_process_learns_of_robots_that_are_added_while_it_runs(server: LabServer) -> None:
     process, given = ExportProcess(), given_file(next(reversed(ROBOTS)))
     assert given is not None

@@ -8,6 +8,7 @@ from functools import cache
 from types import SimpleNamespace
 from typing import Any
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from msgspec import Struct
@@ -214,6 +215,7 @@ STEPS = st.one_of(
 )
 
 
+@pytest.mark.thorough
 @given(st.lists(STEPS, max_size=25))
 def test_a_lab_is_in_the_class_as_long_as_its_student_and_its_teacher_want(
     steps: list[tuple[Any, ...]],

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -12,6 +13,7 @@ from tests.support.kept_blocks import blocks_kept
 FRAMES = st.tuples(st.floats(0, 9), st.floats(0, 1))
 
 
+@pytest.mark.thorough
 @given(st.integers(1, 9), st.lists(FRAMES, max_size=30) | st.lists(FRAMES, min_size=SPARE + 9))
 def test_the_latest_frames_are_kept_in_their_order(
     most: int, frames: list[tuple[float, float]]

@@ -214,6 +214,7 @@ def test_frames_that_are_late_are_drawn_less_often_until_they_no_longer_are() ->
         assert max(gaps[-60:]) <= ceil(STRIDES[1])
 
 
+@pytest.mark.thorough
 def test_drawing_gives_way_before_simulated_time_does() -> None:
     """At the slowest pace there is too much to do; when hurried, there is not."""
     thread, labs, screens = drawn(20.0, lambda _: 0.008, drawing=0.040)
@@ -461,6 +462,7 @@ class Circle:
         self.itself = self
 
 
+@pytest.mark.thorough
 def test_old_garbage_is_collected_while_labs_run() -> None:
     """By itself, as new objects are made; what was imported before is not examined each time."""
     gc.unfreeze()  # what another test has left

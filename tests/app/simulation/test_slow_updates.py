@@ -42,6 +42,7 @@ def updated(count: int, cost: float, seconds: float, stride: float) -> tuple[lis
     return pages, longest
 
 
+@pytest.mark.thorough
 @settings(deadline=None)
 @given(st.integers(1, 130), st.floats(1e-4, 5e-3), st.floats(-0.02, 0.02), st.sampled_from(STRIDES))
 def test_they_keep_to_their_time_and_no_page_waits_for_ever(

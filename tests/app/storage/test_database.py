@@ -434,6 +434,7 @@ def test_kill_9_in_the_middle_of_writes(file: Path) -> None:
         assert not broken_files(file)
 
 
+@pytest.mark.thorough
 def test_processes_that_open_and_write_at_once(file: Path) -> None:
     names = [f"w{i}" for i in range(4)]
     processes = [child(WRITER, str(file), name, "30") for name in names]
@@ -457,6 +458,7 @@ def test_processes_that_find_a_broken_file_at_once(file: Path) -> None:
         assert all(records.load(f"w{i}") for i in range(3))
 
 
+@pytest.mark.thorough
 def test_a_process_that_finds_a_broken_file_waits_while_another_moves_it_aside(file: Path) -> None:
     file.parent.mkdir()
     file.write_bytes(b"broken" * 1000)

@@ -92,6 +92,7 @@ def test_the_button_of_an_invitation_has_a_command_that_the_lab_takes() -> None:
         assert (act is None) == (invitation.name in ("pull", "bend"))
 
 
+@pytest.mark.thorough
 @settings(max_examples=6, deadline=None)
 @given(
     begun=st.floats(0.5, 6.0),

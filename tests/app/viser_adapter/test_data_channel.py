@@ -258,6 +258,7 @@ def test_an_unfinished_message_closes_the_connection() -> None:
     pages.server.stop()
 
 
+@pytest.mark.thorough
 def test_nothing_more_is_sent_to_a_page_that_reads_too_slowly(pages: Pages) -> None:
     """Until it has read most; then it gets what was handed over, and is free for more."""
     stream, other = pages.stream(), pages.stream()

@@ -62,6 +62,7 @@ def moved(
     return loop.layouts.log.unpack(loop.run(state, own, curve.table(), ticks)[1])
 
 
+@pytest.mark.thorough
 @settings(max_examples=10)
 @given(
     name=st.sampled_from(tuple(ROBOTS)),
@@ -184,6 +185,7 @@ def of_a_stop(codes: list[str]) -> bool:
     return any(code == "forecast.exhausted" or code.startswith("caution.") for code in codes)
 
 
+@pytest.mark.thorough
 @settings(max_examples=3)
 @given(st.data(), st.sampled_from(tuple(ROBOTS)))
 def test_nothing_that_the_model_does_not_know_stops_the_follower_unless_it_is_said(

@@ -140,6 +140,7 @@ def test_the_return_takes_over_far_from_the_path_and_nowhere_else(
         assert share == pytest.approx(1, abs=1e-9)
 
 
+@pytest.mark.thorough
 @settings(max_examples=12)
 @given(st.sampled_from(["circle", "clover", "ellipse"]), st.integers(0, 2**32 - 1))
 def test_on_the_return_energy_never_rises_whichever_closest_point_is_taken(

@@ -106,6 +106,7 @@ def test_both_tiers_agree_to_the_last_bit(name: str, names: tuple[str, ...]) -> 
         assert np.array_equal(one, other) and np.isfinite(one).all()
 
 
+@pytest.mark.thorough
 @settings(max_examples=3)
 @given(name=st.sampled_from(list(ROBOTS)))
 def test_the_ideal_loop_has_no_part_in_it(name: str) -> None:
@@ -344,6 +345,7 @@ def test_noise_reaches_the_torque_through_the_gains() -> None:
     assert two / one == pytest.approx(2.0, rel=0.02)
 
 
+@pytest.mark.thorough
 def test_strain_gauges_err_by_the_deflection_that_was_asked_for() -> None:
     """At rest, composite control takes the gauges' errors for a bent beam."""
     values = {"speed": 0.0, "strain_noise": 1e-4, "seed": 1}

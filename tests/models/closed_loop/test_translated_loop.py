@@ -115,6 +115,7 @@ assert not any("llvm" in name for name in sys.modules)
     subprocess.run([sys.executable, "-c", script], check=True, env=environment)
 
 
+@pytest.mark.thorough
 @pytest.mark.skipif(sys.platform != "linux", reason="reads the resident memory from /proc")
 def test_a_compiled_loop_keeps_its_machine_code_and_not_its_compiler() -> None:
     kernel = kernel_of(RIGID_FIVE_BAR, Kind("path_following"))

@@ -78,6 +78,7 @@ def page() -> Iterator[NodePage]:
     page.close()
 
 
+@pytest.mark.thorough
 def test_every_operation_is_the_interpreter_s_for_all_kinds_of_numbers(page: NodePage) -> None:
     """But for the functions of the engine's mathematics, whose last bits may be others."""
     codes = [code for code, each in OPERATIONS.items() if each.wasm]

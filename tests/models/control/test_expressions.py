@@ -94,6 +94,7 @@ def pythons(text: str, numbers: Mapping[str, float]) -> float:
     return value.real if value.imag == 0 else math.nan
 
 
+@pytest.mark.thorough
 @given(made(), st.integers(0, 2**32 - 1))
 @example("-xi**2", 0)
 @example("xi - dxi - theta / e1 / speed", 1)

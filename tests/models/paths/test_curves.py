@@ -108,6 +108,7 @@ def test_a_curve_and_its_table_are_stored_once_after_a_blend_too(curve: Curve) -
         assert np.shares_memory(each.table(), each.series)
 
 
+@pytest.mark.thorough
 @given(st.integers(0, 10_000), st.booleans())
 def test_nearest_point_is_nearest(seed: int, closed: bool) -> None:
     rng = np.random.default_rng(seed)

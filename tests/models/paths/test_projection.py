@@ -87,6 +87,7 @@ def test_result_is_the_curve_there(random_curve: Callable[[int], Curve], once: c
             assert np.abs(columns[:, order] - exact).max() < precision
 
 
+@pytest.mark.thorough
 def test_a_few_ticks_recover_from_a_bad_start(random_curve: Callable[[int], Curve]) -> None:
     rng, often = np.random.default_rng(2), projector(closed=True, passes=8)
     for seed in range(40):

@@ -56,6 +56,7 @@ def test_a_log_in_other_units_and_another_locale_gives_the_arm(log: Path) -> Non
     assert result.found.measured and result.found.laws == ()
 
 
+@pytest.mark.thorough
 def test_the_command_says_the_same_as_python_and_draws(
     log: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -151,6 +152,7 @@ def test_of_200_logs_as_many_intervals_contain_the_truth_as_they_say(robot: str)
     assert all(np.mean(of_logger) > 0.85 for of_logger in each)
 
 
+@pytest.mark.thorough
 def test_of_a_few_logs_most_intervals_contain_the_truth() -> None:
     logger = LOGGERS[1]
     assert np.mean(covered("five_bar", logger, range(4))) > 0.8

@@ -90,6 +90,7 @@ def test_every_law_that_commands_an_acceleration_gets_the_remedy_at_a_torque_lim
         assert (cut != remedied) is LAWS[law].commands_acceleration, law
 
 
+@pytest.mark.thorough
 def test_the_readme_quotes_both_rows_of_saturation() -> None:
     names = ("weak_motors_cut", "weak_motors", "too_fast_cut", "too_fast")
     for law in ("path_following", "trajectory_tracking", "waiting_clock", "event_based"):

@@ -83,6 +83,7 @@ def test_the_tip_of_a_leg_is_below_its_hip_and_that_of_an_arm_above_the_floor(
     assert tip_height(read(tmp_path, SEVEN)) > -SEVEN[0].at[2]
 
 
+@pytest.mark.thorough
 def test_a_rule_that_forbids_all_is_given_up_and_said(tmp_path: Path) -> None:
     """An arm whose waist cannot turn its other joints to the front."""
     behind = [replace(each, at=(-2 * abs(each.at[0]) - 0.9, 0, each.at[2])) for each in SEVEN[1:2]]
@@ -113,6 +114,7 @@ def test_what_is_no_arm_is_refused_in_one_sentence(
     assert "--tip" in str(caught.value)
 
 
+@pytest.mark.thorough
 def test_motors_without_limits_are_said_to_be_unlimited(tmp_path: Path) -> None:
     text = urdf("arm", SEVEN)
     none = text.replace('effort="', 'effort="0" old="')
@@ -130,6 +132,7 @@ def test_the_same_file_has_the_same_pose(tmp_path: Path) -> None:
     assert np.array_equal(homes[0].home, homes[1].home)
 
 
+@pytest.mark.thorough
 def test_the_predefined_paths_of_a_small_robot_are_smaller(tmp_path: Path) -> None:
     """In experiments and path texts alike; they fit, and those of larger robots stay."""
     small = [

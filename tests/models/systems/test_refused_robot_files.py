@@ -234,6 +234,7 @@ def test_a_package_is_the_nearest_folder_with_its_file_or_one_that_is_named(tmp_
     assert shapes[0].size == (0.001,) * 3
 
 
+@pytest.mark.thorough
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=2000)
 @given(mangled(urdf_seeds()), st.sampled_from(["tip", "tool0", ""]))
 def test_a_mangled_file_is_read_or_refused(tmp_path: Path, data: bytes, tip: str) -> None:

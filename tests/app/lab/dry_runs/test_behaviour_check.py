@@ -57,11 +57,13 @@ def listed_faults() -> list[str]:
 NUMBERS = [name.partition("-")[0] for name in COURSE.lessons]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", some(NUMBERS, ("03", "08")))
 def test_a_lesson_says_what_the_lab_does(name: str) -> None:
     assert not faults(name)
 
 
+@pytest.mark.thorough
 def test_every_other_sentence_is_listed_and_so_are_those_of_readme_and_help() -> None:
     assert not listed_faults()
 
@@ -119,6 +121,7 @@ def test_a_mark_is_shown_as_plain_words_and_compared_with_the_translation(tmp_pa
     assert run_command(["lessons", "check", str(tmp_path)]) == 1
 
 
+@pytest.mark.thorough
 def test_a_course_without_a_list_is_told_how_many_sentences_nobody_plays(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -126,12 +126,14 @@ def test_who_does_not_think_passes_no_task_of_those_drawn(loop_cache: LoopCache)
         assert not [str(fault) for fault in passes_of(ASKED[task], loop_cache).problems()]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("task", ["hold-two-seconds", "get-it-going"])
 def test_who_does_not_think_does_not_pass(loop_cache: LoopCache, task: str) -> None:
     found = passes_of(ASKED[task], loop_cache, count=20)
     assert not found.thoughtless and found.random <= MOST_PASS
 
 
+@pytest.mark.thorough
 def test_without_its_price_a_task_is_passed_by_sliders_and_chance(loop_cache: LoopCache) -> None:
     found = passes_of(without(ASKED["hold-two-seconds"], "K1"), loop_cache, count=20)
     assert {"K1 = 2500", "K1 = 2500 and K2 = 200"} <= set(found.thoughtless)
@@ -148,6 +150,7 @@ def test_a_link_that_evokes_a_note_is_no_refusal(loop_cache: LoopCache) -> None:
     assert found.thoughtless == ["link 'A path that crosses itself' and nothing else"]
 
 
+@pytest.mark.thorough
 def test_a_hint_that_is_the_solution_is_found(loop_cache: LoopCache) -> None:
     asked = ASKED["get-it-going"]
     for hint, passed in (("Set K5 to 20, and wait.", True), ("K5 = 12 is not enough.", False)):

@@ -72,6 +72,7 @@ def test_contouring_is_on_time_while_its_error_is_small_and_then_goes_far_off() 
     assert off("contouring", "brake") > 2 * off("trajectory_tracking", "brake")
 
 
+@pytest.mark.thorough
 def test_a_brake_that_every_other_law_stands_stops_contouring_for_the_reason_that_is_told() -> None:
     """In a quarter of a second, as its text says; at once it is off its curve."""
     held = experiments("five_bar")["obstruction"]
@@ -90,6 +91,7 @@ def test_a_brake_that_every_other_law_stands_stops_contouring_for_the_reason_tha
     ]
 
 
+@pytest.mark.thorough
 def test_event_based_is_soonest_at_its_speed_and_is_pressed_off_the_curve() -> None:
     others = [name for name in CONTEST.laws() if not LAWS[name].by_clock and name != "event_based"]
     soonest = max(delays("event_based", "start_off_at_rest"))
@@ -182,6 +184,7 @@ def stated(pattern: str, text: str) -> list[float]:
     return [float(number) for number in found.groups()]
 
 
+@pytest.mark.thorough
 def test_the_disturbance_observer_is_back_sooner_after_a_long_pull() -> None:
     """As its docstring and models/studies/README.md say: by the numbers that they state."""
     told = " ".join((disturbance_observer.__doc__ or "").split())
@@ -284,6 +287,7 @@ def test_with_a_payload_that_it_does_not_know_the_fastest_speed_is_too_fast() ->
     assert shares == pytest.approx(said, abs=1)
 
 
+@pytest.mark.thorough
 def test_what_is_said_where_a_payload_is_set_is_what_it_does() -> None:
     """What would hang less than 10 mm low without the integral is lifted by it; else 10 mm are."""
     spec, most = specs(ROBOTS["seven_axes"].parameters)["payload"], 1e3 * INTEGRAL_REACH
