@@ -79,8 +79,8 @@ def read_upload(upload: Upload, language: str) -> FollowCurve | Message | ValueE
 
 def import_libraries() -> None:
     """Import what is slow to import, so that a file's time limit does not include it."""
-    for name in ("scipy.interpolate", "scipy.spatial", "svgpathtools"):
-        with suppress(ImportError):  # svgpathtools is an extra
+    for name in ("scipy.interpolate", "scipy.spatial", "svgpathtools", "tinycss2"):
+        with suppress(ImportError):  # the last two are an extra
             import_module(name)
 
 

@@ -1472,6 +1472,22 @@ error-log_factor = der Faktor von { $name } ist { $value }: er darf nicht 0 sein
 say-one_of_lines = Von { $count } Linien in der Datei wird die längste genommen: { $name }. Eine andere wählst du mit part=1 und so weiter; diese ist part={ $part }.
 say-gcode_words = Diese Wörter der Datei haben keine Wirkung auf die Bahn: { $words }.
 say-rounded = Die engste Biegung der Bahn hat einen Radius von { $radius } mm.
+say-repeats = { $count ->
+    [one] Eine Linie wiederholt eine andere und wird
+   *[other] { $count } Linien wiederholen andere und werden
+} einmal gezeichnet.
+say-specks = { $count ->
+    [one] Ein Fleck, kleiner als ein halbes Prozent der Zeichnung, wird
+   *[other] { $count } Flecken, kleiner als ein halbes Prozent der Zeichnung, werden
+} weggelassen.
+say-svg_filled = { $count ->
+    [one] Eine gefüllte Form ohne Linie wird
+   *[other] { $count } gefüllte Formen ohne Linie werden
+} weggelassen. Mit einer Konturlinie werden sie gezeichnet.
+say-svg_left_out = { $what ->
+    [image] Bilder in der Zeichnung haben keine Linien und werden weggelassen. Nachgezeichnet hätten sie welche (in Inkscape: Pfad > Bitmap nachzeichnen).
+   *[text] Text in der Zeichnung hat keine Linien und wird weggelassen. In Pfade umgewandelt hätte er welche (in Inkscape: Pfad > Objekt in Pfad umwandeln).
+}
 say-nearest = Der Bahn kann so nicht gefolgt werden: { $reasons }. Die Roboter folgen der nächstliegenden gefundenen, die möglich ist; sie ist bis zu { $apart } mm entfernt.
 error-file_size = die Datei ist größer als { $most } MB
 error-file_empty = die Datei ist leer
@@ -1481,6 +1497,7 @@ error-file_points = Zeile { $line }: mehr als { $most } Punkte
 error-file_corners = die Linie hat zu viele Ecken: Höchstens { $most } werden abgerundet
 error-file_no_line = die Datei enthält keine Linie, die eine Bahn sein könnte
 error-file_part = part { $part }: die Datei hat { $count } Linien
+error-file_layer = es gibt keine Ebene { $layer } mit Linien; die Ebenen sind { $names }
 error-file_option = { $name }: { $value } ist nicht möglich
 error-file_radius = ein Radius gehört zu corners=round
 error-file_too_large = die Bahn reicht { $farthest } m weit vom Ursprung, möglich ist höchstens { $most } m: gib die Einheit an, einen Maßstab (scale) oder fit=0.1
@@ -1501,10 +1518,16 @@ error-gcode_no_arc = Zeile { $line }: I, J und R gehören zu den Bögen von G2 u
 error-gcode_arc_form = Zeile { $line }: ein Bogen braucht entweder seinen Radius R oder I und J seines Mittelpunkts
 error-gcode_arc_ends = Zeile { $line }: die Enden des Bogens sind { $first } mm und { $last } mm von seinem Mittelpunkt entfernt
 error-gcode_radius = Zeile { $line }: kein Bogen mit dem Radius { $radius } mm hat diese Enden
-error-svg_not_installed = Zeichnungen brauchen svgpathtools: pip install "onpath[svg]"
+error-svg_not_installed = Zeichnungen brauchen svgpathtools und tinycss2: pip install "onpath[svg]"
 error-svg_no_drawing = die Datei ist keine SVG-Zeichnung
 error-svg_no_xml = Zeile { $line }, Spalte { $column }: kein XML ({ $reason })
-error-svg_doctype = Zeile { $line }: DOCTYPE und Entitäten werden nicht gelesen; lösche sie
+error-svg_entity = Zeile { $line }: die Entität { $name } steht nicht für bloßen Text und wird nicht gelesen
+error-svg_grows = Zeile { $line }: Entitäten machen die Zeichnung viel länger als die Datei
+error-svg_styles = Zeile { $line }: die Stilregeln der Zeichnung sind zu viele für ihre Elemente
+error-svg_only = { $what ->
+    [image] die Zeichnung ist ein Bild, das keine Linien hat: zeichne es nach (in Inkscape: Pfad > Bitmap nachzeichnen)
+   *[text] die Zeichnung ist Text, der keine Linien hat: wandle ihn in Pfade um (in Inkscape: Pfad > Objekt in Pfad umwandeln; in Illustrator: Schrift > In Pfade umwandeln)
+}
 error-svg_large = Zeile { $line }: die Zeichnung hat mehr als { $most } Elemente, oder { $deepest } ineinander
 error-svg_shape = Zeile { $line }: { $tag } ist hier nicht lesbar ({ $reason })
 

@@ -1064,6 +1064,22 @@ error-log_factor = the factor of { $name } is { $value }: it must not be 0, and 
 say-one_of_lines = Of { $count } lines in the file, the longest is taken: { $name }. Choose another one with part=1 and so on; this one is part={ $part }.
 say-gcode_words = These words of the file have no effect on the path: { $words }.
 say-rounded = The tightest bend of the path has a radius of { $radius } mm.
+say-repeats = { $count ->
+    [one] A line repeats another one and is
+   *[other] { $count } lines repeat others and are
+} drawn once.
+say-specks = { $count ->
+    [one] A speck is
+   *[other] { $count } specks are
+} left out: smaller than half a percent of the drawing.
+say-svg_filled = { $count ->
+    [one] A filled shape without a line is
+   *[other] { $count } filled shapes without a line are
+} left out. To draw them, give them a stroke.
+say-svg_left_out = { $what ->
+    [image] Pictures in the drawing have no lines and are left out. To draw them, trace them (in Inkscape, Path > Trace Bitmap).
+   *[text] Text in the drawing has no lines and is left out. To draw it, convert it to paths (in Inkscape, Path > Object to Path).
+}
 say-nearest = The path cannot be followed as it is: { $reasons }. The robots follow the nearest path found that they can; it is up to { $apart } mm away.
 error-file_size = the file is larger than { $most } MB
 error-file_empty = the file is empty
@@ -1073,6 +1089,7 @@ error-file_points = line { $line }: more than { $most } points
 error-file_corners = the line has too many corners: at most { $most } are rounded
 error-file_no_line = the file has no line that could be a path
 error-file_part = part { $part }: the file has { $count } lines
+error-file_layer = there is no layer { $layer } with lines; the layers are { $names }
 error-file_option = { $name }: { $value } is not possible
 error-file_radius = a radius is for corners=round
 error-file_too_large = the path reaches { $farthest } m from the origin, at most { $most } m is possible: state the unit, a scale, or fit=0.1
@@ -1093,10 +1110,16 @@ error-gcode_no_arc = line { $line }: I, J and R are for the arcs of G2 and G3
 error-gcode_arc_form = line { $line }: an arc needs either its radius R, or I and J of its centre
 error-gcode_arc_ends = line { $line }: the arc's ends are { $first } mm and { $last } mm away from its centre
 error-gcode_radius = line { $line }: no arc with the radius { $radius } mm has these ends
-error-svg_not_installed = drawings need svgpathtools: pip install "onpath[svg]"
+error-svg_not_installed = drawings need svgpathtools and tinycss2: pip install "onpath[svg]"
 error-svg_no_drawing = the file is not an SVG drawing
 error-svg_no_xml = line { $line }, column { $column }: not XML ({ $reason })
-error-svg_doctype = line { $line }: a DOCTYPE and entities are not read; delete them
+error-svg_entity = line { $line }: the entity { $name } does not stand for plain text, and is not read
+error-svg_grows = line { $line }: entities make the drawing much longer than the file
+error-svg_styles = line { $line }: the drawing's style sheets have too many rules for its elements
+error-svg_only = { $what ->
+    [image] the drawing is a picture, which has no lines: trace it (in Inkscape, Path > Trace Bitmap)
+   *[text] the drawing is text, which has no lines: convert it to paths (in Inkscape, Path > Object to Path; in Illustrator, Type > Create Outlines)
+}
 error-svg_large = line { $line }: the drawing has more than { $most } elements, or more than { $deepest } nested in each other
 error-svg_shape = line { $line }: this { $tag } cannot be read ({ $reason })
 

@@ -15,6 +15,7 @@ from pathlib import Path
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError, Message
 from onpath.models.path_files.gcode import strokes_of_gcode
+from onpath.models.path_files.joining import joined
 from onpath.models.path_files.placing import (
     LARGEST,
     RADIUS,
@@ -84,20 +85,26 @@ def path_of(data: bytes, name: str, placing: Placing, most: int = MOST_BYTES) ->
         if placing != Placing():
             raise CodedError("error.file_described")
         return _remarked(curve_from_text(text_of(data, encoding_of(data[:4]))), [])
-    drawing = drawing_of(data, name, unit=placing.unit, most=most)
+    drawing = drawing_of(data, name, unit=placing.unit, layer=placing.layer, most=most)
     chosen, taken = _chosen(drawing.strokes, placing.part)
     stroke = max(chosen, key=lambda each: each.length)
     return _path(stroke, placing, [*taken, *drawing.remarks])
 
 
 def drawing_of(
-    data: bytes, name: str, *, unit: str | None = None, most: int = MOST_BYTES
+    data: bytes,
+    name: str,
+    *,
+    unit: str | None = None,
+    layer: str | None = None,
+    most: int = MOST_BYTES,
 ) -> LineDrawing:
     """The lines in the content of a file, in the order in which they are drawn.
 
     Args:
         name: of the file; its ending tells G-code.
         unit: of the numbers in the file, see `Placing`.
+        layer: wanted layer, see `Placing`.
         most: largest size, [B].
 
     Raises:
@@ -107,9 +114,7 @@ def drawing_of(
     head = _head(data, most)
     if _is_described(data, head):
         raise CodedError("error.file_described")
-    strokes, remarks = _strokes(data, name, head, unit)
-    if not strokes:
-        raise CodedError("error.file_no_line")
+    strokes, remarks = _strokes(data, name, head, unit, layer)
     return LineDrawing(tuple(strokes), tuple(remarks))
 
 
@@ -209,17 +214,27 @@ def check_placing(placing: Placing) -> None:
 
 
 def _strokes(
-    data: bytes, name: str, head: str, unit: str | None
+    data: bytes, name: str, head: str, unit: str | None, layer: str | None
 ) -> tuple[Sequence[Stroke], list[Message]]:
-    """The lines of a file, and a remark on what has no effect."""
+    """The lines of a file, and remarks on what was left out."""
     if name.lower().endswith(".svg") or head.lstrip("\ufeff \t\r\n").startswith("<"):
-        return _in_units(strokes_of_svg(data), unit, UNITS["px"]), []
-    if name.lower().endswith(GCODE) or _GCODE.match(head):
+        strokes, remarks = strokes_of_svg(data, layer)
+        usual = UNITS["px"]
+    elif name.lower().endswith(GCODE) or _GCODE.match(head):
         text = text_of(data, encoding_of(data[:4]))
         strokes, words = strokes_of_gcode(text)
-        remark = Message("say.gcode_words", {"words": ", ".join(words)})
-        return _in_units(strokes, unit, UNITS["mm"]), [remark] if words else []
-    return [stroke_of_table(data, unit)], []
+        remarks = [Message("say.gcode_words", {"words": ", ".join(words)})] if words else []
+        usual = UNITS["mm"]
+    else:
+        return [stroke_of_table(data, unit)], []
+    if not strokes:
+        raise CodedError("error.file_no_line")
+    lines = joined(_in_units(strokes, unit, usual))
+    if lines.repeats:
+        remarks.append(Message("say.repeats", {"count": lines.repeats}))
+    if lines.specks:
+        remarks.append(Message("say.specks", {"count": lines.specks}))
+    return lines.strokes, remarks
 
 
 def _in_units(strokes: list[Stroke], unit: str | None, usual: float) -> list[Stroke]:

@@ -1,171 +1,334 @@
 """Reads the lines of an SVG drawing: paths, lines, polygons, circles, ellipses and rectangles.
 
-Groups and their transforms count, text, pictures, symbols and styles do not. A length is that on
-paper: `width` and `viewBox` of the drawing give the size of its unit, else it is 1/96 of an inch.
-The y axis points up, as in the plane of a path.
+Lengths and places are those that a browser gives them: transforms, styles, viewports, symbols and
+`use` count. Where nothing states a size, a unit of the drawing is 1/96 of an inch. The y axis
+points up, as in the plane of a path. Clips, dashes and animations have no effect.
 
-The shapes are read by svgpathtools, an extra of OnPath. The file is untrusted: DOCTYPE, entities,
-deep nesting and too many elements are refused before.
+Of a drawing with lines, its shapes that are only filled are left out; else their outlines are the
+lines. What paints nothing, or white on white, is drawn only if nothing else is there; hidden layers
+and definitions are not. Text and pictures have no lines, and are said to be left out.
+
+Paths are read by svgpathtools and style sheets by tinycss2, an extra of OnPath. The file is
+untrusted: what multiplies it, such as entities and `use`, is bounded.
 """
 
 from __future__ import annotations
 
-import re
 import warnings
-from collections.abc import Callable, Iterator
-from functools import partial
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from enum import IntEnum
 from importlib.util import find_spec
 from typing import Any
 from xml.etree.ElementTree import Element
-from xml.parsers import expat
 
 import numpy as np
 
 from onpath.models.arrays import Array
-from onpath.models.errors import CodedError
+from onpath.models.errors import CodedError, Message
 from onpath.models.path_files.stroke import UNITS, Stroke, check_count, drawn_stroke
+from onpath.models.path_files.svg_document import (
+    DEEPEST,
+    LAYER,
+    LINE,
+    LINK,
+    MOST_ELEMENTS,
+    read_document,
+    too_large,
+)
+from onpath.models.path_files.svg_geometry import (
+    DRAWN,
+    Size,
+    length,
+    lines_of,
+    shift,
+    transform,
+    view_box,
+    viewport,
+)
+from onpath.models.path_files.svg_styles import (
+    Style,
+    StyledElement,
+    StyleSheets,
+    is_drawn,
+    is_painted,
+    is_zero,
+)
 
-DEEPEST, MOST_ELEMENTS = 50, 20_000
 LONGEST_NAME = 40  # of a line, as far as a message quotes it
-CURVED = 48  # straight pieces of a Bézier curve or an arc
-GROUPS = ("svg", "g", "a", "switch")
-LINE = "line-in-file"
-PICA = UNITS["in"] / 6
-_LENGTH = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*(mm|cm|m|in|pt|pc|px|)\s*", re.ASCII)
-_SIZES = {**UNITS, "pc": PICA, "": UNITS["px"]}
+GROUPS = ("g", "a", "svg", "symbol", "switch")
+LEFT_OUT = ("text", "image", "foreignObject")
+USUAL = 300.0, 150.0  # [px], size of a drawing that states none
+REACHING = 0.5  # of the drawing's size, from which on its lines are the drawing
 
 
-def strokes_of_svg(data: bytes) -> list[Stroke]:
-    """The lines of a drawing, in the order of the file.
+class Paint(IntEnum):
+    """How the outline of a shape can be seen."""
+
+    LINE, FILLED, UNSEEN = range(3)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Outline:
+    stroke: Stroke
+    paint: Paint
+
+
+@dataclass(frozen=True, slots=True)
+class _Context:
+    """What the elements around an element give it.
+
+    Attributes:
+        matrix: from its coordinates to pixels.
+        size: of its viewport.
+        style: of the element around it.
+        place: the element around it, None for the root.
+        depth: number of elements around it, uses counted.
+        inside: whether it is in the wanted layer.
+        used: size that a `use` gives a symbol or a drawing.
+    """
+
+    matrix: Array
+    size: Size
+    style: Style
+    place: StyledElement | None
+    depth: int
+    inside: bool
+    used: tuple[str | None, str | None] = (None, None)
+
+
+def strokes_of_svg(data: bytes, layer: str | None = None) -> tuple[list[Stroke], list[Message]]:
+    """The lines of a drawing, in the order of the file, and what was left out.
+
+    Args:
+        layer: name of the layer to draw; None: all that are shown.
 
     Raises:
-        CodedError: svgpathtools is not installed, or the file is not a drawing that can be read;
-            the message names the line.
+        CodedError: a library is not installed, the file is not a drawing that can be read, or has
+            no lines; the message names the line, or says what to do.
     """
-    if find_spec("svgpathtools") is None:
+    if find_spec("svgpathtools") is None or find_spec("tinycss2") is None:
         raise CodedError("error.svg_not_installed")
-    root = _DrawingReader().read(data)
-    if root.tag != "svg":
-        raise CodedError("error.svg_no_drawing")
-    unit, strokes, count = _unit(root), list[Stroke](), 0
-    for element, path, name in _shapes(root):
-        for part in _read(element, list, _continuous(path, int(element.get(LINE, "0")))):
-            z = unit * np.column_stack([part.real, -part.imag])
-            count += len(z)
-            check_count(count, int(element.get(LINE, "0")))
-            strokes.append(drawn_stroke(z, name))
-    return strokes
+    root = read_document(data)
+    reader = _DrawingReader(root, layer)
+    with np.errstate(all="ignore"):  # what overflows is refused
+        outlines = reader.outlines()
+    if not outlines:
+        if layer is not None:
+            names = ", ".join(dict.fromkeys(reader.layers)) or "–"
+            raise CodedError("error.file_layer", layer=layer[:LONGEST_NAME], names=names[:200])
+        for tag in LEFT_OUT:
+            if tag in reader.left_out:
+                raise CodedError("error.svg_only", what="image" if tag == "image" else "text")
+        raise CodedError("error.file_no_line")
+    return _shown(outlines, reader)
+
+
+def _shown(outlines: list[_Outline], reader: _DrawingReader) -> tuple[list[Stroke], list[Message]]:
+    """The lines that a reader of the drawing would call its lines."""
+    seen = [each for each in outlines if each.paint < Paint.UNSEEN and not reader.is_ground(each)]
+    seen = seen or [each for each in outlines if each.paint < Paint.UNSEEN] or outlines
+    lines = [each for each in seen if each.paint == Paint.LINE]
+    remarks = list[Message]()
+    if 0 < len(lines) < len(seen) and _size(lines) >= REACHING * _size(seen):
+        remarks.append(Message("say.svg_filled", {"count": len(seen) - len(lines)}))
+        seen = lines
+    if reader.left_out:
+        only = "image" if reader.left_out == {"image"} else "text"
+        remarks.append(Message("say.svg_left_out", {"what": only}))
+    return [each.stroke for each in seen], remarks
+
+
+def _size(outlines: Sequence[_Outline]) -> float:
+    """The larger side of the box around them."""
+    low = np.min([each.stroke.points.min(0) for each in outlines], axis=0)
+    high = np.max([each.stroke.points.max(0) for each in outlines], axis=0)
+    with np.errstate(all="ignore"):
+        return float((high - low).max())
 
 
 class _DrawingReader:
-    """Reads XML to elements that know their line; see the module."""
+    """Walks through a drawing.
 
-    def __init__(self) -> None:
-        self._open, self._count = [Element("file")], 0
-        self._parser = expat.ParserCreate(namespace_separator=" ")
-        self._parser.StartDoctypeDeclHandler = self._refuse
-        self._parser.EntityDeclHandler = self._refuse
-        self._parser.StartElementHandler = self._begin
-        self._parser.EndElementHandler = self._end
+    Attributes:
+        layers: names of its layers.
+        left_out: tags of elements that are shown but have no lines.
+    """
 
-    def read(self, data: bytes) -> Element:
-        """The root element."""
-        try:
-            self._parser.Parse(data, True)
-        except expat.ExpatError as error:
-            reason = expat.errors.messages[error.code]
-            place = str(error.lineno), str(error.offset + 1)
-            raise CodedError(
-                "error.svg_no_xml", line=place[0], column=place[1], reason=reason
-            ) from None
-        except CodedError:
-            raise
-        except (LookupError, ValueError):  # an encoding that does not exist
-            raise CodedError("error.file_no_text") from None
-        return self._open[0][0]
+    def __init__(self, root: Element, layer: str | None) -> None:
+        self._root, self._layer = root, layer
+        self._sheets = StyleSheets(root)
+        self._named = dict[str, Element]()
+        for element in root.iter():
+            if name := element.get("id"):
+                self._named.setdefault(name, element)
+        self._drawn, self._points, self._shapes = 0, 0, 0
+        self._page = (0.0, 0.0)
+        self.layers, self.left_out = list[str](), set[str]()
 
-    def _refuse(self, *_: Any) -> None:
-        raise CodedError("error.svg_doctype", line=str(self._parser.CurrentLineNumber))
+    def outlines(self) -> list[_Outline]:
+        """All lines that are not hidden."""
+        around = _Context(
+            matrix=np.identity(3),
+            size=USUAL,
+            style={},
+            place=None,
+            depth=0,
+            inside=self._layer is None,
+        )
+        return list(self._visit(self._root, around))
 
-    def _begin(self, tag: str, attributes: dict[str, str]) -> None:
-        self._count += 1
-        line = str(self._parser.CurrentLineNumber)
-        if len(self._open) > DEEPEST or self._count > MOST_ELEMENTS:
-            raise CodedError("error.svg_large", line=line, deepest=DEEPEST, most=MOST_ELEMENTS)
-        element = Element(tag.rpartition(" ")[2], attributes | {LINE: line})
-        self._open[-1].append(element)
-        self._open.append(element)
+    def is_ground(self, outline: _Outline) -> bool:
+        """Whether it is the sheet behind the drawing: only filled, and as large as the page."""
+        if outline.paint == Paint.LINE or not all(self._page):
+            return False
+        px = outline.stroke.points / UNITS["px"]
+        return bool((np.ptp(px, axis=0) >= 0.99 * np.array(self._page)).all())
 
-    def _end(self, _: str) -> None:
-        self._open.pop()
-
-
-def _unit(root: Element) -> float:
-    """The size of the drawing's unit, [m]."""
-    width, box = _LENGTH.fullmatch(root.get("width", "")), root.get("viewBox", "")
-    numbers = [float(each) for each in re.findall(r"[-+]?(?:\d+\.?\d*|\.\d+)", box)[:4]]
-    if width is None or len(numbers) != 4 or numbers[2] <= 0:
-        return _SIZES[""]
-    size = float(width[1]) * _SIZES[width[2]] / numbers[2]
-    return size if 0 < size < np.inf else _SIZES[""]
-
-
-def _shapes(root: Element) -> Iterator[tuple[Element, Any, str]]:
-    """Element, path and name of all shapes, in the coordinates of the drawing."""
-    from svgpathtools import parse_path
-    from svgpathtools.document import CONVERSIONS
-    from svgpathtools.parser import parse_transform
-    from svgpathtools.path import transform
-
-    waiting, number = [(root, np.identity(3))], 0
-    while waiting:
-        element, before = waiting.pop()
+    def _visit(self, element: Element, around: _Context) -> Iterator[_Outline]:
+        """The lines of an element and those in it."""
         tag = element.tag
-        if tag not in GROUPS and tag not in CONVERSIONS:
-            continue
-        own = _read(element, partial(parse_transform, strict=True), element.get("transform"))
-        if tag in GROUPS:
-            waiting += [(each, before @ own) for each in reversed(element)]
-            continue
-        number += 1
-        described = _read(element, CONVERSIONS[tag], element)
-        path = _read(element, transform, _read(element, parse_path, described), before @ own)
-        if len(path):
-            yield element, path, element.get("id", "")[:LONGEST_NAME] or f"{tag} {number}"
+        if tag not in GROUPS and tag not in DRAWN and tag not in LEFT_OUT and tag != "use":
+            return
+        self._drawn += 1
+        if around.depth > 2 * DEEPEST or self._drawn > 2 * MOST_ELEMENTS:
+            raise too_large(element.get(LINE, "0"))
+        place = self._sheets.place(element, around.place)
+        style = self._sheets.style(element, place, around.style)
+        inside = around.inside or self._is_layer(element)
+        if not is_drawn(style) and inside == around.inside:  # a hidden layer may be asked for
+            return
+        context = replace(
+            around,
+            matrix=around.matrix @ self._transform(element, style, around.size),
+            style=style,
+            place=place,
+            depth=around.depth + 1,
+            inside=inside,
+        )
+        if tag in LEFT_OUT:
+            if inside and _is_visible(style):
+                self.left_out.add(tag)
+        elif tag == "use":
+            yield from self._use(element, context)
+        elif tag in DRAWN:
+            if inside:
+                yield from self._shape(element, context)
+        else:
+            if tag in ("svg", "symbol"):
+                context = self._framed(element, context)
+            for child in _children(element):
+                if child.tag != "symbol":
+                    yield from self._visit(child, replace(context, used=(None, None)))
+
+    def _is_layer(self, element: Element) -> bool:
+        names = [element.get(LAYER), element.get("id")] if element.tag == "g" else []
+        if names and names[0]:
+            self.layers.append(names[0])
+        return self._layer is not None and self._layer in names
+
+    def _transform(self, element: Element, style: Style, size: Size) -> Array:
+        origin = style.get("transform-origin")
+        return _read(element, lambda: transform(style.get("transform"), origin, size))
+
+    def _use(self, element: Element, context: _Context) -> Iterator[_Outline]:
+        target = self._named.get(element.get(LINK, "").strip().removeprefix("#"))
+        if target is None:
+            return
+        style, size = context.style, context.size
+        x, y = (
+            _read(element, lambda i=i, n=n: length(style.get(n), size[i])) or 0.0
+            for i, n in enumerate("xy")
+        )
+        used = style.get("width"), style.get("height")
+        moved = replace(context, matrix=context.matrix @ shift(x, y), used=used)
+        yield from self._visit(target, moved)
+
+    def _framed(self, element: Element, context: _Context) -> _Context:
+        """The context in a viewport."""
+        style, size, box = context.style, context.size, view_box(element.get("viewBox"))
+        outer = context.place is not None and context.place.parent is None
+
+        def get(name: str, i: int) -> float | None:
+            text = style.get(name)
+            if name == "width" or name == "height":
+                text = context.used[i] or text
+                if outer and (text or "").strip().endswith("%"):
+                    return None
+            return _read(element, lambda: length(text, size[i]))
+
+        width, height = get("width", 0), get("height", 1)
+        if outer:
+            shown = box[2:] if box else USUAL
+            if width is None:
+                width = shown[0] * (height / shown[1] if height is not None else 1.0)
+            if height is None:
+                height = shown[1] * width / shown[0]
+            if width <= 0 or height <= 0:
+                width, height = shown
+            self._page, at = (width, height), (0.0, 0.0)
+        else:
+            width = size[0] if width is None else width
+            height = size[1] if height is None else height
+            at = get("x", 0) or 0.0, get("y", 1) or 0.0
+        matrix = context.matrix @ shift(*at)
+        if box is None:
+            return replace(context, matrix=matrix, size=(width, height))
+        framed = viewport(box, (width, height), element.get("preserveAspectRatio"))
+        return replace(context, matrix=matrix @ framed, size=box[2:])
+
+    def _shape(self, element: Element, context: _Context) -> Iterator[_Outline]:
+        style, line = context.style, int(element.get(LINE, "0"))
+        if not _is_visible(style):
+            return
+        paint = _paint(style)
+        self._shapes += 1
+        name = element.get("id", "")[:LONGEST_NAME] or f"{element.tag} {self._shapes}"
+
+        def counted(points: int) -> None:
+            self._points += points
+            check_count(self._points, line)
+
+        def given(name: str) -> str | None:
+            return style.get(name, element.get(name))
+
+        parts = lines_of(element.tag, given, context.size, counted)
+        for points in _read(element, lambda: list(parts)):
+            z = points @ context.matrix[:2, :2].T + context.matrix[:2, 2]
+            if not np.isfinite(z).all():
+                raise CodedError(
+                    "error.svg_shape", line=str(line), tag=element.tag, reason="not finite"
+                )
+            yield _Outline(drawn_stroke(UNITS["px"] * z * (1, -1), name), paint)
 
 
-def _read(element: Element, reader: Callable[..., Any], *arguments: Any) -> Any:
-    """What svgpathtools reads of an element; whatever it raises is an error of the file."""
+def _children(element: Element) -> Sequence[Element]:
+    """The children that are drawn: of a switch the first."""
+    if element.tag != "switch":
+        return list(element)
+    known = (each for each in element if not each.get("requiredExtensions"))
+    return [each for each in known if each.tag in (*GROUPS, *DRAWN, "use", "text")][:1]
+
+
+def _is_visible(style: Style) -> bool:
+    return style.get("visibility", "visible").strip() not in ("hidden", "collapse")
+
+
+def _paint(style: Style) -> Paint:
+    if is_painted(style, "stroke", "none") and not is_zero(style.get("stroke-width", "1")):
+        return Paint.LINE
+    return Paint.FILLED if is_painted(style, "fill", "black") else Paint.UNSEEN
+
+
+def _read(element: Element, reader: Any) -> Any:
+    """What is read of an element; whatever a library raises is an error of the file."""
     try:
         with np.errstate(all="ignore"), warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            return reader(*arguments)
+            return reader()
     except CodedError:
         raise
-    except Exception as error:  # it raises many kinds, also AssertionError
+    except Exception as error:  # svgpathtools raises many kinds, also AssertionError
         reason = str(error).partition("\n")[0][:80] or type(error).__name__
         line = element.get(LINE, "")
         raise CodedError("error.svg_shape", line=line, tag=element.tag, reason=reason) from None
-
-
-def _continuous(path: Any, line: int) -> Iterator[Array]:
-    """The parts of a path without gaps, as complex points."""
-    from svgpathtools import Line
-
-    part, count = list[complex](), 0
-    steps = np.arange(1, CURVED + 1) / CURVED
-    for segment in path:
-        if part and abs(segment.start - part[-1]) > 1e-9 * max(1.0, abs(part[-1])):
-            yield np.array(part)
-            part = []
-        if not part:
-            part.append(complex(segment.start))
-        between = (1.0,) if isinstance(segment, Line) else steps
-        count += len(between)
-        check_count(count, line)
-        with np.errstate(all="ignore"):
-            part += [complex(segment.point(float(t))) for t in between]
-        if not np.isfinite(part[-1]):
-            raise CodedError("error.svg_shape", line=str(line), tag="path", reason="not finite")
-    if part:
-        yield np.array(part)

@@ -31,11 +31,15 @@ BOMB = b"<!DOCTYPE a [" + b"".join(
     b'<!ENTITY a%d "%s">' % (i, b"&a%d;" % (i - 1) * 10 if i else b"x" * 99) for i in range(9)
 )
 HOSTILE = {
-    "entities that inflate": (BOMB + b"]><svg>&a8;</svg>", "a.svg", "DOCTYPE"),
+    "entities that inflate": (
+        BOMB + b"]><svg>&a8;</svg>",
+        "a.svg",
+        "does not stand for plain text",
+    ),
     "a file of the server": (
         b'<!DOCTYPE s [<!ENTITY a SYSTEM "file:///etc/passwd">]><svg><text>&a;</text></svg>',
         "a.svg",
-        "DOCTYPE",
+        "does not stand for plain text",
     ),
     "too large": (b"0,0\n" * (MOST_BYTES // 4 + 1), "a.csv", "larger than 1 MB"),
     "too many points": (b"0,0\n" * 100_001, "a.csv", "more than"),

@@ -367,16 +367,6 @@ REFUSED: dict[str, tuple[str | bytes, str, str]] = {
     "a bad number": ('<svg>\n<circle r="x"/></svg>', "a.svg", "line 2: this circle"),
     "a bad transform": ('<svg>\n<g transform="turn(3)"/></svg>', "a.svg", "line 2: this g"),
     "far away": ('<svg>\n<path d="M0 0 L1e300 1 1e308 3z"/></svg>', "a.svg", "from the origin"),
-    "entities": (
-        '<?xml version="1.0"?>\n<!DOCTYPE svg [<!ENTITY a "b">]>\n<svg>&a;</svg>',
-        "a.svg",
-        "line 2: a DOCTYPE",
-    ),
-    "a file of the server": (
-        '<!DOCTYPE svg [<!ENTITY a SYSTEM "file:///etc/passwd">]>\n<svg>&a;</svg>',
-        "a.svg",
-        "line 1: a DOCTYPE",
-    ),
     "an unknown entity": ("<svg>\n&a;</svg>", "a.svg", "line 2, column"),
     "nested": ("<svg>\n" + "<g>" * 99 + "</g>" * 99 + "</svg>", "a.svg", "line 2: the drawing has"),
     "many elements": ("<svg>\n" + "<g/>" * 20_001 + "</svg>", "a.svg", "line 2: the drawing has"),
@@ -507,7 +497,7 @@ def test_what_a_message_quotes_of_a_file_is_short() -> None:
             read(text)
         assert len(str(refused.value)) < 300
     line = f'<path id="{long}" d="M0 0 L5 0 L5 5"/>'
-    (remark, *_) = read(f"<svg>{line}{line}</svg>", "a.svg", fit=0.1).remarks
+    (remark, *_) = read(f"<svg>{line}{line.replace('5 5', '9 9')}</svg>", "a.svg", fit=0.1).remarks
     assert len(str(remark)) < 300
 
 

@@ -1,3 +1,4 @@
+from svgpathtools.path import Arc as Arc
 from svgpathtools.path import Line as Line
 from svgpathtools.path import Path
 

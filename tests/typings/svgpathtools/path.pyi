@@ -1,17 +1,19 @@
 from collections.abc import Iterator
 
-import numpy as np
-from numpy.typing import NDArray
-
-class Segment:
+class Line:
     start: complex
     end: complex
-    def point(self, t: float) -> complex: ...
+    def bpoints(self) -> tuple[complex, ...]: ...
 
-class Line(Segment): ...
+class Arc:
+    start: complex
+    end: complex
+    center: complex
+    radius: complex
+    rotation: float
+    theta: float
+    delta: float
 
 class Path:
     def __len__(self) -> int: ...
-    def __iter__(self) -> Iterator[Segment]: ...
-
-def transform(curve: Path, tf: NDArray[np.float64]) -> Path: ...
+    def __iter__(self) -> Iterator[Line | Arc]: ...

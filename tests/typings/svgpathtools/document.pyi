@@ -1,4 +1,0 @@
-from collections.abc import Callable
-from xml.etree.ElementTree import Element
-
-CONVERSIONS: dict[str, Callable[[Element], str]]
