@@ -85,7 +85,7 @@ def key_of(experiment: Experiment, law: str, *others: str) -> str:
         data["own_gains"],
         sorted(data["schedule"].items(), key=str),
         data["start"].tobytes(),
-        (curve.closed, curve.equation, curve.series.tobytes()),
+        (curve.closed, curve.equation, curve.coefficients.tobytes()),
         _made_of(law_named(law)),
         others,
     )

@@ -26,6 +26,7 @@ from onpath.models.errors import Coded, CodedError, Message
 from onpath.models.path_files.placing import Placing
 from onpath.models.path_files.reading import path_of
 from onpath.models.paths.curve_faults import curve_faults
+from onpath.models.paths.curves import SeriesCurve
 from onpath.models.paths.nearest_path import nearest_path
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import Parameters
@@ -63,6 +64,7 @@ def read_upload(upload: Upload, language: str) -> FollowCurve | Message | ValueE
     except ValueError as error:
         return error
     curve, words = read.curve, Words(language)
+    assert isinstance(curve, SeriesCurve)
     margin, nearest = ROBOTS[upload.robot].make(upload.parameters).margin, None
     if curve_faults(margin, curve):
         nearest = nearest_path(margin, curve)

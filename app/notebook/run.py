@@ -224,12 +224,12 @@ class Run:
 
     def _with(self, others: tuple[Run, ...]) -> list[Trajectory]:
         """The trajectories of this run and others."""
-        robot, series = self.experiment.robot(), self.experiment.curve().series
+        robot, path = self.experiment.robot(), self.experiment.curve().coefficients
         for other in others:
             if not isinstance(other, Run):
                 raise TypeError(f"expected a run, got {other!r:.60}")
             experiment = other.experiment
-            same_path = np.array_equal(experiment.curve().series, series)
+            same_path = np.array_equal(experiment.curve().coefficients, path)
             if experiment.robot() is not robot or not same_path:
                 raise ValueError("only runs of one robot on one path can be shown together")
         return [self.trajectory, *(other.trajectory for other in others)]

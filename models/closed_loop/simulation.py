@@ -57,8 +57,13 @@ class Push:
 
 
 FREE = Push()  # nothing acts
-_conic = lru_cache(maxsize=64)(Curve.conic)  # needed at every change of a setting
 _kind = lru_cache(maxsize=64)(Kind)  # one object for all loops of a kind, and their histories
+
+
+@lru_cache(maxsize=64)
+def _conic(curve: Curve) -> tuple[Array, Array, float] | None:
+    """`Curve.conic`, which every change of a setting needs."""
+    return curve.conic()
 
 
 def has_level_set(curve: Curve) -> bool:

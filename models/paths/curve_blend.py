@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from onpath.models.arrays import Array
-from onpath.models.paths.curves import HARMONICS, Curve, chebyshev_curve, fourier
+from onpath.models.paths.curves import HARMONICS, Curve, SeriesCurve, chebyshev_curve, fourier
 from onpath.models.paths.space_curves import in_space
+from onpath.models.paths.spline_curves import SplineCurve
 
 _ORDER = np.arange(1.0, HARMONICS + 1)
 
@@ -14,14 +15,20 @@ _ORDER = np.arange(1.0, HARMONICS + 1)
 def blend(old: Curve, new: Curve, fraction: float) -> Curve:
     """The curve (1 - fraction) old + fraction new; both are closed, or both open.
 
-    If one of them is a space curve, the other is taken at height 0.
+    If one of them is a space curve, the other is taken at height 0. Between a series and a drawing,
+    or drawings with other numbers of pieces, there is none: it is the new curve from the start.
     """
+    if type(old) is not type(new) or old.coefficients.shape[:-1] != new.coefficients.shape[:-1]:
+        return new
     d = max(old.dimension, new.dimension)
     old, new = (curve if curve.dimension == d else in_space(curve) for curve in (old, new))
-    return Curve(new.closed, (1 - fraction) * old.series + fraction * new.series)
+    mixed = (1 - fraction) * old.coefficients + fraction * new.coefficients
+    if isinstance(new, SplineCurve):
+        return SplineCurve(new.closed, mixed, new.raised)
+    return SeriesCurve(new.closed, mixed)
 
 
-def aligned(curve: Curve, to: Curve) -> Curve:
+def aligned(curve: SeriesCurve, to: SeriesCurve) -> SeriesCurve:
     """The same curve with its parameter shifted, and reversed if necessary, to match `to`.
 
     A closed curve becomes σ(±(θ + δ)); sign and δ maximise the correlation of its Fourier
@@ -47,6 +54,6 @@ def aligned(curve: Curve, to: Curve) -> Curve:
     return fourier(curve.series[0, 0], cosine * a + sine * b, cosine * b - sine * a)
 
 
-def _harmonics(curve: Curve) -> tuple[Array, Array]:
+def _harmonics(curve: SeriesCurve) -> tuple[Array, Array]:
     """The Fourier coefficients a_k and b_k of a closed curve, each (HARMONICS, 2), [m]."""
     return curve.series[0, 1 : HARMONICS + 1], curve.series[0, HARMONICS + 1 :]

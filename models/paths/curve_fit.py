@@ -9,18 +9,19 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import dist
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, TypeVar
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError, Message
-from onpath.models.paths.curves import HARMONICS, Curve, chebyshev_curve, fourier
+from onpath.models.paths.curves import HARMONICS, Curve, SeriesCurve, chebyshev_curve, fourier
 
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline
 
+C = TypeVar("C", bound=Curve)
 SAMPLES = 256  # points at equal arc length to which a series is fitted
 SHORTEST = 0.02  # [m], shortest total length of a path
 DENSE = 2048  # points that represent a curve or a line
@@ -28,7 +29,7 @@ APART = 1e-4  # [m], least distance of consecutive points
 FAR = 4e-3  # [m], deviation of a curve above which its user is told
 
 
-def closed_through(points: Array) -> Curve:
+def closed_through(points: Array) -> SeriesCurve:
     """A smooth closed curve near the given points, in their order.
 
     The curve does not pass exactly through the points, because its series is truncated. With
@@ -50,13 +51,13 @@ def closed_through(points: Array) -> Curve:
     return _fourier_of(_equal_arc(spline, endpoint=False))
 
 
-def fitted(points: Array, closed: bool) -> Curve:
+def fitted(points: Array, closed: bool) -> SeriesCurve:
     """`closed_through` or `open_through`, with the deviation of the curve."""
     curve = closed_through(points) if closed else open_through(points)
     return with_deviation(curve, points)
 
 
-def with_deviation(curve: Curve, points: Array) -> Curve:
+def with_deviation(curve: C, points: Array) -> C:
     """The curve with the points that it was `given`, and its `deviation` from the lines between.
 
     It is the larger of two distances: the largest from the curve to the lines, and the largest from
@@ -86,7 +87,7 @@ def deviation_remark(curve: Curve) -> Message | None:
     return Message("say.deviates", {"deviation": f"{1e3 * curve.deviation:.1f}"})
 
 
-def along(points: Array, closed: bool) -> Curve:
+def along(points: Array, closed: bool) -> SeriesCurve:
     """A curve along the straight lines between points, in their order.
 
     See `closed_through` and `open_through` for the series.
@@ -106,7 +107,7 @@ def along(points: Array, closed: bool) -> Curve:
     return _fourier_of(samples) if closed else _chebyshev_of(samples)
 
 
-def open_through(points: Array) -> Curve:
+def open_through(points: Array) -> SeriesCurve:
     """A smooth open curve near the given points, from the first to the last.
 
     Two points give the straight segment between them.
@@ -125,7 +126,7 @@ def open_through(points: Array) -> Curve:
     return _chebyshev_of(_equal_arc(spline, endpoint=True))
 
 
-def through_samples(samples: Array, closed: bool) -> Curve:
+def through_samples(samples: Array, closed: bool) -> SeriesCurve:
     """The curve with given points at evenly spaced θ from -π to π.
 
     A curve of this project is recovered from its own samples up to rounding.
@@ -141,7 +142,7 @@ def through_samples(samples: Array, closed: bool) -> Curve:
     return chebyshev_curve(np.asarray(chebyshev.chebfit(at, samples, HARMONICS), dtype=float))
 
 
-def from_stroke(points: Array, closed: bool, passes: int = 40) -> Curve:
+def from_stroke(points: Array, closed: bool, passes: int = 40) -> SeriesCurve:
     """A curve from a freehand stroke: resampled at 96 points, smoothed, then fitted.
 
     With S the smoothing operator, the fitted points are S z + S (z - S z): smoothing the residual
@@ -252,14 +253,14 @@ def _equal_arc(spline: CubicSpline, endpoint: bool) -> Array:
     return np.asarray(spline(np.interp(even, s, knots)), dtype=np.float64)
 
 
-def _fourier_of(samples: Array) -> Curve:
+def _fourier_of(samples: Array) -> SeriesCurve:
     """The truncated Fourier series of samples at θ_n = -π + 2πn/N, shape (N, d)."""
     spectrum = np.fft.rfft(samples, axis=0) / len(samples)
     harmonics = spectrum[1 : HARMONICS + 1] * _half_turns()[:, None]
     return fourier(spectrum[0].real, 2 * harmonics.real, -2 * harmonics.imag)
 
 
-def _chebyshev_of(samples: Array) -> Curve:
+def _chebyshev_of(samples: Array) -> SeriesCurve:
     """The Chebyshev series that fits samples at evenly spaced θ best, shape (SAMPLES, 2)."""
     x = _even(-1, 1, SAMPLES)
     coefficients: Array = chebyshev.chebfit(x, samples, HARMONICS).astype(np.float64)

@@ -1,6 +1,7 @@
 """Curves σ(θ), θ in [-π, π]: closed ones as Fourier series, open ones as Chebyshev series.
 
-A curve and its first three derivatives are series over one basis {1, C_1..C_K, S_1..S_K}:
+Those of many pieces are in models/paths/spline_curves.py; both are a
+`Curve`. A series and its first three derivatives have one basis {1, C_1..C_K, S_1..S_K}:
 
     closed:  C_k = cos kθ,       S_k = sin kθ,
     open:    C_k = T_k(θ / π),   S_k is not used.
@@ -11,13 +12,15 @@ Outside [-π, π] an open curve continues along its end tangents.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass, field, fields
 from typing import Any
 
 import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
+from typing_extensions import override
 
 from onpath.models.arrays import Array
 
@@ -27,18 +30,16 @@ ORDERS = 4  # the curve and its first three derivatives
 TABLE_SHAPE = (2 * ORDERS, TERMS)  # of `Curve.table` of a planar curve, before it is flattened
 SPACE_TABLE_SHAPE = (3 * ORDERS, TERMS)  # of that of a space curve
 PERIOD = 2 * np.pi  # [rad]
+GRID = 256  # of a series, see `Curve.grid`
 _ORDER = np.arange(1.0, HARMONICS + 1)
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Curve:
+class Curve(ABC):
     """A curve σ(θ), θ in [-π, π] (periodic when closed), in d = 2 or 3 dimensions.
 
     Attributes:
         closed: whether the curve is closed.
-        series: coefficients of σ, σ', σ'' and σ''', shape (ORDERS, TERMS, d). For each order: the
-            constant, K rows for C_k and K rows for S_k; [m] for σ, [m/rad^i] for its i-th
-            derivative.
         equation: s = ... in z1 and z2, if the curve consists of the points where s is 0.
         deviation: largest distance between the curve and the straight lines between the points to
             which it was fitted, [m]; 0 if it was not fitted.
@@ -47,10 +48,9 @@ class Curve:
     """
 
     closed: bool
-    series: Array
-    equation: str | None = None
-    deviation: float = 0.0
-    given: Array | None = None
+    equation: str | None = field(default=None, kw_only=True)
+    deviation: float = field(default=0.0, kw_only=True)
+    given: Array | None = field(default=None, kw_only=True)
 
     def __repr__(self) -> str:
         kind, size = "closed" if self.closed else "open", 1e3 * np.ptp(self._drawn(), axis=0)
@@ -76,17 +76,18 @@ class Curve:
 
     def _drawn(self) -> Array:
         """Points from θ = -π to π, shape (n, d), [m]."""
-        return self.at(np.linspace(-np.pi, np.pi, 181))
+        return self.at(np.linspace(-np.pi, np.pi, self.grid + 1))
 
     def data(self) -> dict[str, Any]:
         """The curve by the names of its attributes."""
         return {f.name: getattr(self, f.name) for f in fields(self)}
 
     @property
+    @abstractmethod
     def dimension(self) -> int:
         """d: 2 for a curve in the plane of the path, 3 for a space curve (z1, z2, ζ)."""
-        return self.series.shape[-1]
 
+    @abstractmethod
     def at(self, theta: Array, order: int = 0) -> Array:
         """σ or one of its derivatives at θ, shape (...,) -> (..., d), [m/rad^order].
 
@@ -97,50 +98,40 @@ class Curve:
             theta: [rad].
             order: 0 for σ, 1 to 3 for a derivative.
         """
-        theta = np.asarray(theta, dtype=float)
-        inner = theta if self.closed else np.clip(theta, -np.pi, np.pi)
-        value = _basis(inner, self.closed) @ self.series[order]
-        if self.closed:
-            return value
-        beyond = (theta - inner)[..., None]
-        if order == 0:
-            return value + beyond * self.at(inner, 1)
-        return value if order == 1 else np.where(beyond == 0, value, 0.0)
 
+    @abstractmethod
     def all_orders(self, theta: Array) -> list[Array]:
         """[σ, σ', σ'', σ'''] at θ, shape (..., n) -> four arrays (..., n, d).
 
         Equal to four calls of `at`, but evaluates the basis once.
         """
-        inner = theta if self.closed else np.clip(theta, -np.pi, np.pi)
-        basis = _basis(inner, self.closed)
-        values = [basis @ self.series[order] for order in range(ORDERS)]
-        if not self.closed:
-            beyond = (theta - inner)[..., None]
-            values[0] = values[0] + beyond * values[1]
-            values[2:] = [np.where(beyond == 0, value, 0.0) for value in values[2:]]
-        return values
 
+    @abstractmethod
     def table(self) -> Array:
-        """The coefficients for the compiled loop: a (d ORDERS, TERMS) matrix, flat, by columns.
-
-        Its product with the basis at θ is (σ, σ', σ'', σ'''), d rows each. It shares the memory
-        of `series` if possible.
-        """
-        return np.ascontiguousarray(self.series.transpose(1, 0, 2)).ravel()
+        """The curve's coefficients for the compiled loop, flat; their number depends only on d."""
 
     @property
+    @abstractmethod
+    def coefficients(self) -> Array:
+        """The numbers which, with `closed`, determine the curve."""
+
+    @property
+    @abstractmethod
     def plan(self) -> Curve:
         """The plan view z(θ) of a space curve; a planar curve itself."""
-        return self if self.dimension == 2 else Curve(self.closed, self.series[..., :2])
 
-    def terms(self) -> Array:
-        """The coefficients of σ alone, shape (TERMS or HARMONICS + 1, d), [m]; see `from_terms`."""
-        return self.series[0, : terms_of(self.closed)]
+    @property
+    def grid(self) -> int:
+        """Number of evenly spaced θ that miss no bend and no valley of a distance."""
+        return GRID
 
-    def sample(self, count: int = 256) -> Array:
-        """`count` evenly spaced θ, shape (count,), [rad]; a closed curve's end point is omitted."""
-        return np.linspace(-np.pi, np.pi, count, endpoint=not self.closed)
+    def sample(self, count: int | None = None) -> Array:
+        """`count` evenly spaced θ, [rad]; a closed curve's end point is omitted.
+
+        Args:
+            count: None: `grid`.
+        """
+        return np.linspace(-np.pi, np.pi, count or self.grid, endpoint=not self.closed)
 
     def curvature(self, theta: Array) -> Array:
         """Signed curvature κ = (σ'_1 σ''_2 - σ'_2 σ''_1) / |σ'|³, shape (...,) -> (...), [1/m].
@@ -155,24 +146,24 @@ class Curve:
         return (first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]) / speed**3
 
     def length(self) -> float:
-        """Arc length ∫ |σ'| dθ over [-π, π], [m], from 1024 samples.
+        """Arc length ∫ |σ'| dθ over [-π, π], [m], from 4 `grid` samples.
 
         On a closed curve this is the mean of a periodic function, which converges exponentially.
         """
-        theta = self.sample(1024)
+        theta = self.sample(4 * self.grid)
         speed = np.linalg.norm(self.at(theta, 1), axis=-1)
         if self.closed:
             return float(speed.mean() * PERIOD)
         return float(np.trapezoid(speed, theta))
 
-    def nearest(self, z: Array, samples: int = 256) -> tuple[Array, Array]:
+    def nearest(self, z: Array, samples: int | None = None) -> tuple[Array, Array]:
         """Closest points of the curve, ϖ(z) = argmin |z - σ(θ)|, by global search.
 
         This search is the reference for tests of all faster projections.
 
         Args:
             z: points, shape (n, d), [m].
-            samples: size of the grid on which the search starts.
+            samples: size of the grid on which the search starts; None: `grid`.
 
         Returns:
             θ, shape (n,), [rad], and the distances, shape (n,), [m].
@@ -181,6 +172,75 @@ class Curve:
         """
         return nearest(self.at, self.sample(samples), z)
 
+    def conic(self) -> tuple[Array, Array, float] | None:
+        """The level set s(z) of an ellipse, see `SeriesCurve.conic`; None for any other curve."""
+        return None
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class SeriesCurve(Curve):
+    """A curve as a series: Fourier if it is closed, Chebyshev if it is open.
+
+    Attributes:
+        series: coefficients of σ, σ', σ'' and σ''', shape (ORDERS, TERMS, d). For each order: the
+            constant, K rows for C_k and K rows for S_k; [m] for σ, [m/rad^i] for its i-th
+            derivative.
+    """
+
+    series: Array
+
+    @property
+    @override
+    def dimension(self) -> int:
+        return self.series.shape[-1]
+
+    @override
+    def at(self, theta: Array, order: int = 0) -> Array:
+        theta = np.asarray(theta, dtype=float)
+        inner = theta if self.closed else np.clip(theta, -np.pi, np.pi)
+        value = _basis(inner, self.closed) @ self.series[order]
+        if self.closed:
+            return value
+        beyond = (theta - inner)[..., None]
+        if order == 0:
+            return value + beyond * self.at(inner, 1)
+        return value if order == 1 else np.where(beyond == 0, value, 0.0)
+
+    @override
+    def all_orders(self, theta: Array) -> list[Array]:
+        inner = theta if self.closed else np.clip(theta, -np.pi, np.pi)
+        basis = _basis(inner, self.closed)
+        values = [basis @ self.series[order] for order in range(ORDERS)]
+        if not self.closed:
+            beyond = (theta - inner)[..., None]
+            values[0] = values[0] + beyond * values[1]
+            values[2:] = [np.where(beyond == 0, value, 0.0) for value in values[2:]]
+        return values
+
+    @override
+    def table(self) -> Array:
+        """The coefficients for the compiled loop: a (d ORDERS, TERMS) matrix, flat, by columns.
+
+        Its product with the basis at θ is (σ, σ', σ'', σ'''), d rows each. It shares the memory
+        of `series` if possible.
+        """
+        return np.ascontiguousarray(self.series.transpose(1, 0, 2)).ravel()
+
+    @property
+    @override
+    def coefficients(self) -> Array:
+        return self.series
+
+    @property
+    @override
+    def plan(self) -> SeriesCurve:
+        return self if self.dimension == 2 else SeriesCurve(self.closed, self.series[..., :2])
+
+    def terms(self) -> Array:
+        """The coefficients of σ alone, shape (TERMS or HARMONICS + 1, d), [m]; see `from_terms`."""
+        return self.series[0, : terms_of(self.closed)]
+
+    @override
     def conic(self) -> tuple[Array, Array, float] | None:
         """The level set s(z) of an ellipse; None for any other curve.
 
@@ -281,7 +341,7 @@ def _basis(theta: Array, closed: bool) -> Array:
     return values
 
 
-def fourier(constant: Array, cosine: Array, sine: Array) -> Curve:
+def fourier(constant: Array, cosine: Array, sine: Array) -> SeriesCurve:
     """The closed curve σ(θ) = a_0 + Σ_k a_k cos kθ + b_k sin kθ.
 
     Args:
@@ -295,10 +355,10 @@ def fourier(constant: Array, cosine: Array, sine: Array) -> Curve:
     for _ in range(ORDERS - 1):
         a, b = k * b, -k * a
         orders.append(np.vstack([np.zeros(d), a, b]))
-    return Curve(True, _by_terms(orders))
+    return SeriesCurve(True, by_terms(orders))
 
 
-def chebyshev_curve(coefficients: Array) -> Curve:
+def chebyshev_curve(coefficients: Array) -> SeriesCurve:
     """The open curve σ(θ) = Σ_k c_k T_k(θ / π).
 
     Args:
@@ -310,16 +370,10 @@ def chebyshev_curve(coefficients: Array) -> Curve:
         derived = chebyshev.chebder(coefficients, order) if order else coefficients
         table[: len(derived)] = derived / np.pi**order
         orders.append(table)
-    return Curve(False, _by_terms(orders))
+    return SeriesCurve(False, by_terms(orders))
 
 
-def curve_from(data: Mapping[str, Any]) -> Curve:
-    """The inverse of `Curve.data`, to the last bit of what is computed from it."""
-    values: dict[str, Any] = {**data, "series": _by_terms([*data["series"]])}
-    return Curve(**values)
-
-
-def _by_terms(orders: list[Array]) -> Array:
+def by_terms(orders: list[Array]) -> Array:
     """The series of a curve from its orders, laid out so that `Curve.table` needs no copy."""
     return np.stack(orders, axis=1).transpose(1, 0, 2)
 
@@ -329,7 +383,7 @@ def terms_of(closed: bool) -> int:
     return TERMS if closed else HARMONICS + 1
 
 
-def from_terms(closed: bool, terms: Array) -> Curve:
+def from_terms(closed: bool, terms: Array) -> SeriesCurve:
     """The inverse of `Curve.terms`."""
     if not closed:
         return chebyshev_curve(terms)
@@ -340,7 +394,7 @@ def ellipse(
     half_axes: tuple[float, float],
     centre: tuple[float, float] = (0.0, 0.0),
     angle: float = 0.0,
-) -> Curve:
+) -> SeriesCurve:
     """σ(θ) = c + R (a cos θ, b sin θ) with the rotation R by an angle, represented exactly.
 
     Args:
@@ -354,7 +408,7 @@ def ellipse(
     return fourier(np.array(centre), a * along[None], b * across[None])
 
 
-def circle(radius: float, centre: tuple[float, float] = (0.0, 0.0)) -> Curve:
+def circle(radius: float, centre: tuple[float, float] = (0.0, 0.0)) -> SeriesCurve:
     """σ(θ) = c + r (cos θ, sin θ), represented exactly.
 
     Args:
@@ -366,7 +420,7 @@ def circle(radius: float, centre: tuple[float, float] = (0.0, 0.0)) -> Curve:
     return ellipse((radius, radius), centre)
 
 
-def segment(start: tuple[float, float], end: tuple[float, float]) -> Curve:
+def segment(start: tuple[float, float], end: tuple[float, float]) -> SeriesCurve:
     """The straight segment from `start` (θ = -π) to `end` (θ = π), [m]."""
     a, b = np.array(start), np.array(end)
     return chebyshev_curve(np.stack([(a + b) / 2, (b - a) / 2]))

@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from onpath.models.arrays import Array
-from onpath.models.paths.curves import Curve, local_minima, nearest
+from onpath.models.paths.curves import Curve, SeriesCurve, local_minima, nearest
 from onpath.models.paths.frames import Frame, Plane
+from onpath.models.paths.spline_curves import SplineCurve
 
 CHUNK = 1024  # points per array operation, which stay in the processor's cache
 MOST = 4  # local minima of a distance that are refined
@@ -18,7 +19,7 @@ STILL = 1e-7  # [rad]; Newton's next step from a smaller one is lost in rounding
 NEAR = 0.1  # [rad], largest correction of a guess for which its Taylor polynomial is trusted
 
 
-def path_distance(frame: Frame, curve: Curve, y: Array, samples: int = 256) -> Array:
+def path_distance(frame: Frame, curve: Curve, y: Array, samples: int | None = None) -> Array:
     """Distance min over θ of |y - σ(θ)|, by global search, shape (n, p) -> (n,), [m].
 
     The lowest local minima over a grid are refined by Newton steps on the curve's Taylor
@@ -28,7 +29,7 @@ def path_distance(frame: Frame, curve: Curve, y: Array, samples: int = 256) -> A
         frame: how the curve's plane lies in the output space.
         curve: σ, in coordinates of that plane.
         y: points, shape (n, p), [m].
-        samples: size of the grid.
+        samples: size of the grid; None: `Curve.grid`.
     """
     distances = np.empty(len(y))
     for begin in range(0, len(y), CHUNK):
@@ -40,7 +41,7 @@ def path_distance(frame: Frame, curve: Curve, y: Array, samples: int = 256) -> A
 
 
 def _minima(
-    frame: Frame, curve: Curve, y: Array, samples: int
+    frame: Frame, curve: Curve, y: Array, samples: int | None
 ) -> tuple[NDArray[np.intp], Array, Array]:
     """The lowest local minima of the distance from every y to the path, row by row.
 
@@ -100,16 +101,25 @@ def closest_parameter(frame: Frame, curve: Curve, y: Array) -> float:
     Args:
         y: shape (p,), [m].
     """
-    return _closest(frame, curve.closed, curve.series.shape, curve.series.tobytes(), y.tobytes())
+    given = curve.coefficients
+    return _closest(frame, type(curve), curve.closed, given.shape, given.tobytes(), y.tobytes())
 
 
 @lru_cache(maxsize=256)
-def _closest(frame: Frame, closed: bool, shape: tuple[int, ...], series: bytes, y: bytes) -> float:
+def _closest(
+    frame: Frame,
+    made: type[Curve],
+    closed: bool,
+    shape: tuple[int, ...],
+    coefficients: bytes,
+    y: bytes,
+) -> float:
     """`closest_parameter` by content: all labs of a class begin at the same places."""
-    curve, point = Curve(closed, np.frombuffer(series).reshape(shape)), np.frombuffer(y)[None]
+    numbers, point = np.frombuffer(coefficients).reshape(shape), np.frombuffer(y)[None]
+    curve = SplineCurve(closed, numbers) if made is SplineCurve else SeriesCurve(closed, numbers)
     if curve.dimension == 2:
         return float(curve.nearest(frame.planar(point))[0][0])
-    found = nearest(lambda theta: frame.lift(curve.at(theta)), curve.sample(256), point)
+    found = nearest(lambda theta: frame.lift(curve.at(theta)), curve.sample(), point)
     return float(found[0][0])
 
 
@@ -120,7 +130,7 @@ def closest_parameters(frame: Frame, curve: Curve, y: Array) -> Array:
     """
     if curve.dimension == 2:
         frame, y = Plane(), frame.planar(y)
-    row, theta, distance = _minima(frame, curve, y, 256)
+    row, theta, distance = _minima(frame, curve, y, None)
     rows = [np.flatnonzero(row == number) for number in range(len(y))]
     found = np.array([theta[each[distance[each].argmin()]] for each in rows])
     return found if curve.closed else np.clip(found, -np.pi, np.pi)
@@ -154,24 +164,32 @@ def near_distances(frame: Frame, curves: Sequence[Curve], y: Array, theta: Array
         Shape (curves, n), [m].
     """
     every = _stacked(curves)
+    if every is None:
+        each = zip(curves, y, theta, strict=True)
+        return np.stack([near_distance(frame, *given) for given in each])
     better, distances = _refined(frame, every, y, theta)
     guessed = np.sqrt(((frame.lift(every.at(theta)) - y) ** 2).sum(-1))
     astray = ~((np.abs(better - theta) < NEAR) & (distances <= guessed + 1e-12))
     for i in np.flatnonzero(astray.any(axis=1)).tolist():
         failed = astray[i]
-        distances[i, failed] = path_distance(frame, curves[i], y[i, failed], 64)
+        distances[i, failed] = path_distance(frame, curves[i], y[i, failed], curves[i].grid // 4)
     return distances
 
 
-def _stacked(curves: Sequence[Curve]) -> Curve:
+def _stacked(curves: Sequence[Curve]) -> Curve | None:
     """Several curves as one, which maps θ of shape (curves, n) to points (curves, n, d).
 
-    Bit by bit the same as curve by curve.
+    Bit by bit the same as curve by curve. None if there are several and not all are series.
 
     Args:
         curves: all closed, or all open; all planar, or all in space.
     """
-    return Curve(curves[0].closed, np.stack([curve.series for curve in curves], axis=1))
+    if len(curves) == 1:
+        return curves[0]
+    series = [curve.series for curve in curves if isinstance(curve, SeriesCurve)]
+    if len(series) < len(curves):
+        return None
+    return SeriesCurve(curves[0].closed, np.stack(series, axis=1))
 
 
 def _refined(

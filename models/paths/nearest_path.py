@@ -21,7 +21,7 @@ import numpy as np
 from onpath.models.arrays import Array
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curve_fit import with_deviation
-from onpath.models.paths.curves import HARMONICS, Curve, from_terms
+from onpath.models.paths.curves import HARMONICS, Curve, SeriesCurve, from_terms
 from onpath.models.paths.path_checks import LEAST_MARGIN, TUBE
 
 SMOOTHINGS = (0.0, 0.001, 0.003, 0.006, 0.01, 0.02, 0.04, 0.08, 0.15, 0.4, 1.0)  # τ
@@ -33,8 +33,10 @@ CHECKED = 240  # points at which their curvature is checked
 SLACK = 1.001  # of the quick checks, which sample other points
 
 
-def nearest_path(reach: Callable[[Array], Array], curve: Curve) -> Curve | None:
+def nearest_path(reach: Callable[[Array], Array], curve: Curve) -> SeriesCurve | None:
     """The nearest version of a plane curve that a robot can follow; None if there is none.
+
+    There is none of a drawing, which has no coefficients to be damped.
 
     Its `deviation` is from the points that the curve was fitted to, or else from the curve.
 
@@ -42,6 +44,8 @@ def nearest_path(reach: Callable[[Array], Array], curve: Curve) -> Curve | None:
         reach: the robot's `Robot.margin`, shape (n, 2) -> (n,).
         curve: with finite coefficients.
     """
+    if not isinstance(curve, SeriesCurve):
+        return None
     theta = np.linspace(-np.pi, np.pi, SAMPLES)
     start, smoothed = curve.at(theta), [_smoothed(curve, tau) for tau in SMOOTHINGS]
     centre = start.mean(axis=0)
@@ -73,7 +77,7 @@ def nearest_path(reach: Callable[[Array], Array], curve: Curve) -> Curve | None:
     return None
 
 
-def _smoothed(curve: Curve, tau: float) -> Array:
+def _smoothed(curve: SeriesCurve, tau: float) -> Array:
     """The coefficients of σ_τ, as those of `Curve.terms`."""
     order = np.arange(1.0, HARMONICS + 1)
     factor = np.exp(-tau * (order**2 - 1))
@@ -87,7 +91,9 @@ def _smoothed(curve: Curve, tau: float) -> Array:
     return terms
 
 
-def _part_of_the_way(reach: Callable[[Array], Array], curve: Curve, terms: Array) -> Curve:
+def _part_of_the_way(
+    reach: Callable[[Array], Array], curve: SeriesCurve, terms: Array
+) -> SeriesCurve:
     """The curve nearest to the first one on the way to a version that can be followed."""
     begin, low, high = curve.terms(), 0.0, 1.0
     for _ in range(BISECTIONS):

@@ -22,7 +22,7 @@ from onpath.models.paths.curve_fit import (
     open_through,
     with_deviation,
 )
-from onpath.models.paths.curves import Curve, circle, ellipse, fourier, segment
+from onpath.models.paths.curves import Curve, SeriesCurve, circle, ellipse, fourier, segment
 
 MOST_POINTS = 24
 USUAL_RADIUS = 0.05  # [m], of the predefined circle
@@ -130,13 +130,17 @@ def drawn(stroke: Array, before: Curve | None = None) -> PathDesign:
     stroke = np.clip(stroke, -REACH, REACH)
     length = float(np.linalg.norm(np.diff(stroke, axis=0), axis=1).sum())
     closed = float(np.linalg.norm(stroke[0] - stroke[-1])) < 0.25 * length
-    rightwards = before if before and not before.closed else segment((-0.1, 0.0), (0.1, 0.0))
+    rightwards = segment((-0.1, 0.0), (0.1, 0.0))
+    if isinstance(before, SeriesCurve) and not before.closed:
+        rightwards = before
     curve = aligned(from_stroke(stroke, closed), circle(0.1) if closed else rightwards)
     return _with_points(with_deviation(curve, stroke))
 
 
 def from_curve(curve: Curve) -> PathDesign:
-    """A design from any plane curve, with its parameter aligned as in `drawn`."""
+    """A design from any plane curve; the parameter of a series is aligned as in `drawn`."""
+    if not isinstance(curve, SeriesCurve):
+        return _with_points(curve)
     rightwards = segment((-0.1, 0.0), (0.1, 0.0))
     turned = aligned(curve, circle(0.1) if curve.closed else rightwards)
     return _with_points(replace(turned, given=curve.given, deviation=curve.deviation))

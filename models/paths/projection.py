@@ -16,7 +16,8 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 
-from onpath.models.paths.curves import HARMONICS, ORDERS
+from onpath.models.paths.curves import HARMONICS, ORDERS, PERIOD
+from onpath.models.paths.spline_curves import MOST_PIECES, WINDOW, piece_basis
 
 NEWTON_STEPS = 2
 LARGEST_STEP = 0.5  # [rad], of one Newton step
@@ -48,6 +49,26 @@ def _recurrence(x: ca.SX, first: ca.SX, before: float) -> ca.SX:
 def _clamped(theta: ca.SX) -> ca.SX:
     """θ limited to [-π, π]."""
     return ca.fmin(ca.fmax(theta, -np.pi), np.pi)
+
+
+def spline_basis(theta: ca.SX, closed: bool, pieces: ca.SX) -> tuple[ca.SX, ca.SX]:
+    """The basis of σ..σ''' at θ as columns, (WINDOW, ORDERS), and the number of the piece.
+
+    The number is that of a piece of the table whatever θ and `pieces` are, also if they are not
+    numbers: fmin and fmax return the other argument of a NaN.
+    """
+    inner = wrap(theta, True) if closed else _clamped(theta)
+    per_radian = pieces / PERIOD
+    place = (inner + np.pi) * per_radian
+    last = ca.fmin(ca.fmax(ca.floor(pieces) - 1, 0), MOST_PIECES - 1)
+    piece = ca.fmin(ca.fmax(ca.floor(place), 0), last)
+    return ca.horzcat(*(ca.vertcat(*row) for row in piece_basis(place - piece, per_radian))), piece
+
+
+def window(table: ca.MX, piece: ca.MX) -> ca.MX:
+    """The control points of a piece, (d, WINDOW), from a (d, TABLE_POINTS) table."""
+    d = table.size1()
+    return ca.reshape(ca.vec(table)[piece * d + ca.DM(range(d * WINDOW))], d, WINDOW)
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from onpath.models.paths.curves import Curve, chebyshev_curve, fourier
+from onpath.models.arrays import Array
+from onpath.models.paths.curves import PERIOD, Curve, SeriesCurve, chebyshev_curve, fourier
+from onpath.models.paths.spline_curves import DEGREE, SplineCurve
 
 
 def in_space(curve: Curve, height: Curve | None = None) -> Curve:
@@ -12,10 +14,15 @@ def in_space(curve: Curve, height: Curve | None = None) -> Curve:
 
     Args:
         curve: z, in the plane of the path.
-        height: ζ as the first coordinate of a curve, closed or open as z is; None: 0.
+        height: ζ as the first coordinate of a curve, of the kind of z and closed or open as it is,
+            with as many pieces; None: 0.
     """
-    zeta = np.zeros_like(curve.series[..., :1]) if height is None else height.series[..., :1]
-    return Curve(curve.closed, np.concatenate([curve.series, zeta], axis=-1))
+    plan = curve.coefficients
+    zeta = np.zeros_like(plan[..., :1]) if height is None else height.coefficients[..., :1]
+    both = np.concatenate([plan, zeta], axis=-1)
+    if isinstance(curve, SplineCurve):
+        return SplineCurve(curve.closed, both, curve.raised)
+    return SeriesCurve(curve.closed, both)
 
 
 def saddle(curve: Curve, rise: float) -> Curve:
@@ -34,7 +41,27 @@ def saddle(curve: Curve, rise: float) -> Curve:
         return curve
     if curve.dimension == 3:
         raise ValueError("rise: the path is a space curve, and has a height already")
+    if isinstance(curve, SplineCurve):
+        return in_space(curve, _risen(curve, rise))
     if curve.closed:
         none = np.zeros((2, 1))
         return in_space(curve, fourier(np.zeros(1), np.array([[0.0], [rise]]), none))
     return in_space(curve, chebyshev_curve(np.array([[0.0], [0.0], [rise]])))
+
+
+def _risen(curve: SplineCurve, rise: float) -> SplineCurve:
+    """The height of `saddle` as a spline with the pieces of a curve.
+
+    The control points are the height at the centres θ_j of the B-splines, corrected by what their
+    sum makes of it: it is cos 2θ times w_0 + 2 Σ_k w_k cos 2kh at the knots, with the values w of a
+    quintic B-spline there, and θ² + h² / 2 in place of θ².
+    """
+    h = PERIOD / curve.pieces
+    centre = -np.pi + h * (np.arange(len(curve.points)) - (DEGREE - 1) / 2)
+    if curve.closed:
+        damping = (66 + 52 * np.cos(2 * h) + 2 * np.cos(4 * h)) / 120
+        height: Array = rise / damping * np.cos(2 * centre)
+        height[-DEGREE:] = height[:DEGREE]
+    else:
+        height = rise * (2 * (centre**2 - h**2 / 2) / np.pi**2 - 1)
+    return SplineCurve(curve.closed, height[:, None])

@@ -36,8 +36,9 @@ from onpath.models.control.laws.law import Law
 from onpath.models.control.laws.registry import law_named
 from onpath.models.control.settable import changed, specs
 from onpath.models.errors import CodedError, Message
+from onpath.models.paths.curve_data import curve_from
 from onpath.models.paths.curve_faults import ambiguities, curve_faults
-from onpath.models.paths.curves import Curve, circle, curve_from
+from onpath.models.paths.curves import Curve, circle
 from onpath.models.studies import schedule as schedules
 from onpath.models.studies.schedule import Schedule
 from onpath.models.studies.scheduled_run import ScheduledRun

@@ -81,7 +81,7 @@ def _is_another(one: Experiment, other: Experiment, law: str) -> bool:
     return (
         other.robot() is not one.robot()
         or time_step(other.parameters) != time_step(one.parameters)
-        or not np.array_equal(paths[0].series, paths[1].series)
+        or not np.array_equal(paths[0].coefficients, paths[1].coefficients)
         or kind_of(law, other.parameters, paths[1]) != kind_of(law, one.parameters, paths[0])
     )
 

@@ -15,6 +15,7 @@ from onpath.app.lab.simulation import Simulation
 from onpath.models.closed_loop.lab_settings import Kept, LabSettings, settings_kept
 from onpath.models.control.settable import specs, values_of
 from onpath.models.control.sides import DEFAULT_LAWS
+from onpath.models.paths.curves import SeriesCurve
 from onpath.models.paths.path_design import PathDesign
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameter_specs import NOTHING, Spec
@@ -94,6 +95,7 @@ def capture_path(design: PathDesign, paths: Mapping[str, PathDesign]) -> Path:
     closed = design.curve.closed
     if design.name == EDITED:
         return Path(EDITED, closed, _lengths(design.points))
+    assert isinstance(design.curve, SeriesCurve)
     return Path(DRAWN, closed, _lengths(design.curve.terms()))
 
 

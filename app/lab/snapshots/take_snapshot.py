@@ -222,7 +222,7 @@ def _path_snapshot(
     """The current path, or the past path `curve` without its control points."""
     editor, robot = simulation.editor, simulation.robot
     is_present = curve is editor.curve
-    version = editor.version if is_present else curve.series.tobytes()
+    version = editor.version if is_present else curve.coefficients.tobytes()
     if (
         before is not None
         and (before.key.robot, before.key.plane) == (key.robot, key.plane)

@@ -105,7 +105,7 @@ def test_table_is_the_series_by_columns() -> None:
 def test_a_curve_and_its_table_are_stored_once_after_a_blend_too(curve: Curve) -> None:
     """While a path is dragged, a history keeps a curve for each frame."""
     for each in (curve, blend(curve, curve, 0.5)):
-        assert np.shares_memory(each.table(), each.series)
+        assert np.shares_memory(each.table(), each.coefficients)
 
 
 @pytest.mark.thorough

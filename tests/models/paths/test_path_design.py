@@ -171,7 +171,7 @@ def test_a_point_is_not_moved_to_an_invalid_place(name: str, index: int, x: floa
             assert "path" in str(error)
         else:
             assert np.abs(moved.points).max() <= REACH
-            assert np.isfinite(moved.curve.series).all()
+            assert np.isfinite(moved.curve.coefficients).all()
 
 
 @pytest.mark.parametrize("name", GOOD)

@@ -8,7 +8,7 @@ import pytest
 from onpath.models.arrays import Array
 from onpath.models.paths.curve_blend import blend
 from onpath.models.paths.curve_faults import ambiguities, curve_faults
-from onpath.models.paths.curves import Curve, chebyshev_curve, circle, fourier, segment
+from onpath.models.paths.curves import Curve, SeriesCurve, chebyshev_curve, circle, fourier, segment
 from onpath.models.paths.distance import closest_parameter, near_distances, path_distance
 from onpath.models.paths.frames import LevelPlane, Plane, SlantedPlane, Space
 from onpath.models.paths.path_checks import TUBE
@@ -37,7 +37,7 @@ def test_each_order_is_the_derivative_of_the_one_before(curve: Curve) -> None:
 @pytest.mark.parametrize("curve", RAISED)
 def test_the_plan_view_is_the_planar_path(curve: Curve) -> None:
     assert curve.dimension == 3 and curve.conic() is None
-    plan = Curve(curve.closed, curve.series[..., :2])
+    plan = SeriesCurve(curve.closed, curve.coefficients[..., :2])
     theta = np.linspace(-4, 4, 30)
     y = FRAME.lift(curve.at(theta))
     assert np.array_equal(FRAME.planar(y), plan.at(theta))
