@@ -45,8 +45,8 @@ def path_from(
 
     Points are a table with two columns, or with columns named x and y, as any spreadsheet writes
     it; a name may state the unit, as in x_mm. Drawings need `pip install "onpath[svg]"`. Of G-code,
-    G0 to G3, G20, G21, G90 and G91 are read. What leaves the path as it is, such as F, S or M3, has
-    no effect, and everything else is refused. Of several lines, the longest is taken.
+    what the tool draws is read, and not its travel: see `models/path_files/gcode.py`. Of several
+    lines, the longest is taken.
 
     A path has 12 harmonics, and so is smooth: see its `deviation` from the line in the file. Its
     drawing in a notebook shows both.

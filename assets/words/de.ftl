@@ -1470,7 +1470,11 @@ error-log_factor = der Faktor von { $name } ist { $value }: er darf nicht 0 sein
 ## Bahnen aus Dateien (models/path_files)
 
 say-one_of_lines = Von { $count } Linien in der Datei wird die längste genommen: { $name }. Eine andere wählst du mit part=1 und so weiter; diese ist part={ $part }.
-say-gcode_words = Diese Wörter der Datei haben keine Wirkung auf die Bahn: { $words }.
+say-gcode_words = Diese Befehle der Datei haben keine Wirkung auf die Bahn: { $words }{ $more ->
+    [0] .
+   *[other] {""} und { $more } weitere.
+}
+say-gcode_layer = Die Datei druckt { $count } Schichten; gezeichnet wird Schicht { $layer }. Eine andere wählst du mit layer=2 und so weiter.
 say-rounded = Die engste Biegung der Bahn hat einen Radius von { $radius } mm.
 say-repeats = { $count ->
     [one] Eine Linie wiederholt eine andere und wird
@@ -1509,11 +1513,18 @@ error-file_late = die Datei war zu lange unterwegs: Wähle sie noch einmal
 error-file_often = zu viele Dateien hintereinander: Warte einen Moment
 error-points_columns = Zeile { $line }: { $count } Spalten, von denen keine x und y heißen
 error-points_units = Zeile { $line }: x und y haben verschiedene Einheiten
-error-gcode_word = Zeile { $line }, Spalte { $column }: { $text } wird nicht gelesen. Von G-Code werden es G0 bis G3, G20, G21, G90 und G91 mit X, Y, Z, I, J und R, und was die Bahn lässt, wie sie ist, etwa F, S und M3, hat keine Wirkung
+error-gcode_word = Zeile { $line }, Spalte { $column }: { $text } wird nicht gelesen. Ein Wort ist ein Buchstabe und eine Zahl, etwa G1 oder X20.5; Maschinen mit anderen Achsen als X, Y und Z und Programme mit Variablen werden nicht gelesen
 error-gcode_twice = Zeile { $line }, Spalte { $column }: { $text } sagt etwas, was die Zeile schon gesagt hat
 error-gcode_both = Zeile { $line }: { $text } widersprechen einander
-error-gcode_height = Zeile { $line }: das Werkzeug ändert beim Zeichnen seine Höhe; eine Bahn liegt in einer Ebene
-error-gcode_no_motion = Zeile { $line }: kein G0 bis G3 sagt, wie die Bewegung ist
+error-gcode_plane = Zeile { $line }: ein Bogen in einer anderen Ebene als der von X und Y ({ $text })
+error-gcode_changes = Zeile { $line }, Spalte { $column }: { $text } { $why ->
+    [radius] verschiebt die Bahn um den Radius des Werkzeugs
+    [origin] verschiebt den Ursprung an einen Ort, den die Datei nicht nennt
+    [turned] dehnt, dreht oder biegt die Bahn
+    [program] ruft ein anderes Programm auf
+    [curve] ist eine Kurve, die nicht gelesen wird
+   *[unknown] ist nicht bekannt und könnte die Bahn ändern
+}. Lass das Programm, das die Datei schrieb, einfache Bewegungen schreiben, G0 bis G3
 error-gcode_no_arc = Zeile { $line }: I, J und R gehören zu den Bögen von G2 und G3
 error-gcode_arc_form = Zeile { $line }: ein Bogen braucht entweder seinen Radius R oder I und J seines Mittelpunkts
 error-gcode_arc_ends = Zeile { $line }: die Enden des Bogens sind { $first } mm und { $last } mm von seinem Mittelpunkt entfernt

@@ -1062,7 +1062,11 @@ error-log_factor = the factor of { $name } is { $value }: it must not be 0, and 
 ## Paths from files (models/path_files)
 
 say-one_of_lines = Of { $count } lines in the file, the longest is taken: { $name }. Choose another one with part=1 and so on; this one is part={ $part }.
-say-gcode_words = These words of the file have no effect on the path: { $words }.
+say-gcode_words = These codes of the file have no effect on the path: { $words }{ $more ->
+    [0] .
+   *[other] {""} and { $more } more.
+}
+say-gcode_layer = The file prints { $count } layers, of which layer { $layer } is drawn. Choose another one with layer=2 and so on.
 say-rounded = The tightest bend of the path has a radius of { $radius } mm.
 say-repeats = { $count ->
     [one] A line repeats another one and is
@@ -1101,11 +1105,18 @@ error-file_late = the file took too long to arrive: choose it again
 error-file_often = too many files in a row: wait a moment
 error-points_columns = line { $line }: { $count } columns, of which none are called x and y
 error-points_units = line { $line }: x and y have different units
-error-gcode_word = line { $line }, column { $column }: { $text } is not read. G0 to G3, G20, G21, G90 and G91 with X, Y, Z, I, J and R are; words that leave the path as it is, such as F, S and M3, have no effect
+error-gcode_word = line { $line }, column { $column }: { $text } is not read. Words are a letter and a number, such as G1 and X20.5; machines with axes other than X, Y and Z, and programs with variables, are not read
 error-gcode_twice = line { $line }, column { $column }: { $text } repeats a word of the same line
 error-gcode_both = line { $line }: { $text } contradict each other
-error-gcode_height = line { $line }: the tool changes its height while it draws; a path lies in a plane
-error-gcode_no_motion = line { $line }: no G0 to G3 says how to move
+error-gcode_plane = line { $line }: an arc in another plane than that of X and Y ({ $text })
+error-gcode_changes = line { $line }, column { $column }: { $text } { $why ->
+    [radius] moves the path aside by the tool's radius
+    [origin] moves the origin to a place that the file does not state
+    [turned] scales, turns or bends the path
+    [program] runs another program
+    [curve] is a curve that is not read
+   *[unknown] is not known, and may change the path
+}. Let the program that wrote the file write plain moves, G0 to G3
 error-gcode_no_arc = line { $line }: I, J and R are for the arcs of G2 and G3
 error-gcode_arc_form = line { $line }: an arc needs either its radius R, or I and J of its centre
 error-gcode_arc_ends = line { $line }: the arc's ends are { $first } mm and { $last } mm away from its centre

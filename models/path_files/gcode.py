@@ -1,181 +1,459 @@
 """Reads the lines that a tool draws from G-code.
 
-    G0        moves to the beginning of a line      G20, G21  lengths are in inches, in millimetres
-    G1        draws a straight line                 G90, G91  X and Y are absolute, relative
-    G2, G3    draw an arc clockwise, anticlockwise, with its centre at (I, J) from its beginning or
-              with radius R, negative for the longer arc
+    G0        moves without drawing                 G20, G21  lengths are in inches, in millimetres
+    G1        moves along a straight line           G90, G91  X and Y are absolute, relative
+    G2, G3    move along an arc clockwise, anticlockwise, with its centre at (I, J) from its
+              beginning or with radius R, negative for the longer arc; a helix is its circle
+    G92, G28  state the place where the tool is, send it home
 
-Codes hold until the next one, and M2 and M30 end the program. Where the tool is raised or lowered,
-a line ends; Z does not change within one. Numbers of lines and programs, comments and % are
-skipped. Words that leave the path as it is have no effect: speeds, tools, pauses, coolant, and the
-codes in `WITHOUT_EFFECT`. Everything else is refused: a compensated tool, for example, would follow
-another path than the one read here.
+A move with G1 to G3 draws, unless
+
+- in a print, no material comes: E does not grow;
+- a laser or spindle is off: M5 or S0, or M3 and M4 are still to come; without these, M107;
+- a pen is raised: by a servo (M280, M300, or the S of M3), whose raised state is the one in which
+  it travels with G0, or in which the file ends; or by its height.
+
+Of heights, those from 0 on are up if the tool also goes below 0, else the upper half; down is up if
+G0 travels below the lines. The way of a tool that goes down while it moves belongs to its line, and
+a move whose X and Y stay is none. Of a print, one layer is read.
+
+Codes hold until the next one, and before the first one G0 does; M2 and M30 end the program. Codes
+without effect on the lines are listed. Those that would change them are refused by name.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from math import atan2, ceil, cos, hypot, isfinite, pi, sin, sqrt
+from math import atan2, ceil, cos, hypot, pi, sin, sqrt
 from typing import TypeVar
 
-from onpath.models.errors import CodedError
+from onpath.models.errors import CodedError, Message
+from onpath.models.path_files.gcode_words import Words, bare_lines, column_of, words_of
 from onpath.models.path_files.stroke import UNITS, Stroke, check_count, drawn_stroke
 
-LONGEST_LINE = 1000  # [characters]
 TURN = pi / 90  # [rad], largest turn between two points of an arc
 UNEVEN = 0.01  # largest relative difference of an arc's radius at its ends
 ROUNDED = 2e-5  # [m], difference that rounded numbers may make
-MOTIONS = {"0": 0, "1": 1, "2": 2, "3": 3}
+STILL = 1e-9  # [m], of a move that is none
+MOST_LISTED = 12  # codes without effect
+MOTIONS = {"0": 0, "1": 1, "2": 2, "3": 3} | {str(code): 0 for code in (*range(81, 90), 73)}
+"""Motions; of a cycle of drilling, only the ways between its holes are left."""
 SIZES = {"20": UNITS["in"], "21": UNITS["mm"]}
 WAYS = {"90": False, "91": True}
+CENTRES = {"90.1": True, "91.1": False}
+PLANES = {"17": 17, "18": 18, "19": 19}
+OBEYED = frozenset(
+    f"G{code}" for code in (*MOTIONS, *SIZES, *WAYS, *CENTRES, *PLANES, 28, 30, 92, 92.1)
+) | {"M3", "M4", "M5", "M82", "M83", "M280", "M300"}
 WITHOUT_EFFECT = frozenset(
-    [f"G{code}" for code in (4, 17, 40, 43, 49, 54, 61, 64, 80, 91.1, 92.1, 93, 94)]
-    + [f"M{code}" for code in (0, 1, 3, 4, 5, 6, 7, 8, 9, 48, 49, 52)]
+    f"G{code}"
+    for code in (
+        *(
+            4,
+            8,
+            9,
+            11,
+            15,
+            17,
+            29,
+            38.2,
+            38.3,
+            38.4,
+            38.5,
+            40,
+            43,
+            43.1,
+            44,
+            49,
+            50,
+            53,
+            54,
+            60,
+            61,
+        ),
+        *(61.1, 64, 69, 80, 92.2, 93, 94, 95, 96, 97, 98, 99),
+    )
 )
-"""Codes besides those above that leave the path in the plane as it is."""
-LETTERS_WITHOUT_EFFECT = frozenset("FSTHP")
-"""Letters of further words without effect: speeds, tools and times."""
+"""G codes besides those that leave the lines as they are; M codes do, unless they are below."""
+CHANGING = {
+    **dict.fromkeys(("G41", "G42"), "radius"),
+    **dict.fromkeys(("G10", "G52", "G55", "G56", "G57", "G58", "G59"), "origin"),
+    **dict.fromkeys(("G16", "G51", "G68", "G7"), "turned"),
+    **dict.fromkeys(("G65", "G66", "M97", "M98", "M99"), "program"),
+    **dict.fromkeys(("G5", "G5.1", "G6", "G12", "G13"), "curve"),
+}
+"""Codes that would change the lines, and how."""
 ENDS = frozenset(("M2", "M30"))
-_COMMENT = re.compile(r"\([^()]*\)|;.*")
-_OBEYED = {f"G{code}" for code in (*MOTIONS, *SIZES, *WAYS)} | set("XYZIJRNO")
-_KNOWN = _OBEYED | WITHOUT_EFFECT | LETTERS_WITHOUT_EFFECT | ENDS
-_WORD = re.compile(r"\s*([A-Z])\s*([-+]?(?:\d+\.?\d*|\.\d+))", re.ASCII)
-
+_PRINTS = re.compile(r"[XY].*E\s*[-+]?\.?\d")
+_SWITCHES = re.compile(r"M0*[34](?!\d)")
+_LAYER = re.compile(r"\s*;\s*(?:LAYER:\s*-?\d+|LAYER_CHANGE|CHANGE_LAYER)\b", re.IGNORECASE)
 Point = tuple[float, float]
 T = TypeVar("T")
 
 
+@dataclass(frozen=True, slots=True)
+class _Move:
+    """A move that may draw.
+
+    Attributes:
+        line: of the file.
+        points: from its beginning on.
+        heights: at its beginning and its end, None if nothing has been said of them.
+        power: S of a laser or spindle, 0 if it is off.
+        pen: state of a servo, None if nothing has been said of it.
+        draws: whether material comes, in a print.
+    """
+
+    line: int
+    points: list[Point]
+    heights: tuple[float | None, float | None]
+    power: float
+    pen: float | None
+    draws: bool
+
+
+@dataclass(slots=True)
+class _Used:
+    """Values that a state has while the tool moves in the plane, and the last one."""
+
+    rapid: set[float] = field(default_factory=set[float])
+    feed: set[float] = field(default_factory=set[float])
+    last: float | None = None
+
+    def raised(self) -> float | None:
+        """The one of two states in which a servo holds the pen up; None if there is none."""
+        if len(self.rapid | self.feed) != 2:
+            return None
+        travel = self.rapid - self.feed
+        if len(travel) == 1:
+            return next(iter(travel))
+        return self.last if not self.rapid else None
+
+
 @dataclass(slots=True)
 class _Machine:
-    """The state of the machine, and the lines drawn so far."""
+    """The state of the machine, and its moves so far.
 
+    Attributes:
+        prints: whether the file is that of a printer.
+        marked: whether comments mark the layers of a print.
+        wanted: the layer of a print that is read, from 1.
+        spindle: whether M3 or M4 switches a spindle or laser; else, with `fan`, M106 does.
+        moves: those that may draw; None where a line ends.
+    """
+
+    prints: bool
+    marked: bool
+    wanted: int
+    spindle: bool
+    fan: bool
     at: Point = (0.0, 0.0)
-    height: float = 0.0
-    motion: int | None = None
+    shift: Point = (0.0, 0.0)  # of the coordinates by G92
+    height: float | None = None
+    motion: int = 0
     unit: float = SIZES["21"]
+    plane: int = 17
     relative: bool = False
+    absolute_centres: bool = False
+    on: bool = True
+    power: float | None = None
+    pen: float | None = None
+    extruded: float = 0.0
+    relative_extrusion: bool = False
+    layer: int = 0
+    layer_height: float | None = None
     count: int = 0
-    drawn: list[tuple[int, list[Point]]] = field(default_factory=list[tuple[int, list[Point]]])
-    fresh: bool = True  # the next line begins where the machine is
+    moves: list[_Move | None] = field(default_factory=list["_Move | None"])
+    stated: set[float] = field(default_factory=set[float])
+    heights: _Used = field(default_factory=_Used)
+    powers: _Used = field(default_factory=_Used)
+    pens: _Used = field(default_factory=_Used)
     without_effect: dict[str, None] = field(default_factory=dict[str, None])
 
-    def lift(self, height: float, *, moves: bool, line: int) -> None:
-        """Raise or lower the tool, which ends a line.
+    def rest(self) -> None:
+        """End the line that is being drawn."""
+        if self.moves and self.moves[-1] is not None:
+            self.moves.append(None)
+
+    def go(self, points: list[Point], before: float | None, line: int, *, draws: bool) -> None:
+        """Move through points.
 
         Args:
-            moves: whether it also moves in the plane.
+            before: height at the beginning.
+            draws: whether material comes, in a print.
         """
-        if height == self.height:
-            return
-        if moves and self.motion:
-            raise CodedError("error.gcode_height", line=str(line))
-        self.height, self.fresh = height, True
-
-    def go(self, points: list[Point], line: int) -> None:
-        """Move through points, and draw unless the motion is G0."""
-        if self.motion == 0:
-            self.fresh = True
-        else:
-            if self.fresh:
-                self.drawn.append((line, [self.at]))
-                self.fresh = False
-            self.drawn[-1][1].extend(points)
+        power = (1.0 if self.power is None else self.power) if self.on else 0.0
+        for used, value in (
+            (self.heights, self.height),
+            (self.powers, power),
+            (self.pens, self.pen),
+        ):
+            if value is not None:
+                (used.feed if self.motion else used.rapid).add(value)
+        if draws and not self.marked and self.height != self.layer_height:
+            self.layer, self.layer_height = self.layer + 1, self.height
+        wanted = draws and self.layer == self.wanted if self.prints else self.motion > 0
+        if wanted:
             self.count += len(points)
             check_count(self.count, line)
+            heights = before, self.height
+            self.moves.append(_Move(line, [self.at, *points], heights, power, self.pen, draws))
+        else:
+            self.rest()
         self.at = points[-1]
 
 
-def strokes_of_gcode(text: str) -> tuple[list[Stroke], tuple[str, ...]]:
-    """The lines that a tool draws, in the order of the file, and the words without effect.
+def strokes_of_gcode(text: str, layer: str | None = None) -> tuple[list[Stroke], list[Message]]:
+    """The lines that a tool draws, in the order of the file, and what has no effect.
+
+    Args:
+        layer: number of a print's layer, from 1; None: the first.
 
     Raises:
-        CodedError: the text has anything but the words above, or an impossible arc; the
+        CodedError: the text has what is refused, or an impossible arc, or no such layer; the
             message names line and column.
     """
-    machine = _Machine()
-    for number, line in enumerate(text.splitlines(), start=1):
-        if len(line) > LONGEST_LINE:
-            raise CodedError("error.table_long_line", line=str(number), most=str(LONGEST_LINE))
-        bare = _COMMENT.sub(lambda found: " " * len(found[0]), line.upper())  # columns stay
-        words = _words(bare, number) if bare.strip() != "%" else {}
+    lines, comments = bare_lines(text), text.splitlines()
+    machine = _Machine(
+        prints=any(_PRINTS.search(line) for line in lines),
+        marked=any(_LAYER.match(line) for line in comments),
+        wanted=int(layer) if layer and re.fullmatch(r"0*[1-9]\d{0,8}", layer, re.ASCII) else 1,
+        spindle=any(_SWITCHES.search(line) for line in lines),
+        fan=any("M106" in line for line in lines) and any("M107" in line for line in lines),
+    )
+    machine.marked = machine.marked and machine.prints
+    machine.fan = machine.fan and not machine.spindle and not machine.prints
+    machine.on = not machine.spindle and not machine.fan
+    for number, bare in enumerate(lines, start=1):
+        if machine.marked and _LAYER.match(comments[number - 1]):
+            machine.layer += 1
+            machine.rest()
+        words = words_of(bare, number)
+        _check(words, bare, number)
         _obey(machine, words, number)
         if words.keys() & ENDS:
             break
-    strokes = [drawn_stroke(points, f"line {line}") for line, points in machine.drawn]
-    return strokes, tuple(machine.without_effect)
+    if layer is not None and not (machine.prints and layer.lstrip("0") == str(machine.wanted)):
+        raise _no_layer(machine, layer)
+    drawn = _lines(machine)
+    if layer is not None and not drawn:
+        raise _no_layer(machine, layer)
+    strokes = [drawn_stroke(points, f"line {line}") for line, points in drawn]
+    return strokes, _remarks(machine)
 
 
-def _words(bare: str, line: int) -> dict[str, float]:
-    """The words of a line by letter; codes of G and M as G0, M3 and so on.
+def _no_layer(machine: _Machine, layer: str) -> CodedError:
+    names = f"1 … {machine.layer}" if machine.layer else "–"
+    return CodedError("error.file_layer", layer=layer[:40], names=names)
+
+
+def _remarks(machine: _Machine) -> list[Message]:
+    remarks = list[Message]()
+    if machine.layer > 1:
+        layer, count = str(machine.wanted), machine.layer
+        remarks.append(Message("say.gcode_layer", {"layer": layer, "count": count}))
+    if codes := [*machine.without_effect]:
+        more = len(codes) - MOST_LISTED
+        words = ", ".join(codes[:MOST_LISTED])
+        remarks.append(Message("say.gcode_words", {"words": words, "more": max(more, 0)}))
+    return remarks
+
+
+def _lines(machine: _Machine) -> list[tuple[int, list[Point]]]:
+    """Number in the file and points of the lines that are drawn."""
+    pen = machine.pens.raised()
+    is_down = _down(machine.heights, machine.stated if machine.spindle else set())
+    power = None
+    if 0.0 not in machine.powers.rapid | machine.powers.feed:
+        power = machine.powers.raised() if is_down is None else None
+    drawn, fresh = list[tuple[int, list[Point]]](), True
+    for move in machine.moves:
+        draws = (
+            move is not None
+            and (pen is None or move.pen not in (pen, None))
+            and (move.draws if machine.prints else move.power not in (0.0, power))
+            and (machine.prints or is_down is None or any(map(is_down, move.heights)))
+        )
+        if move is None or not draws:
+            fresh = True
+            continue
+        if fresh:
+            drawn.append((move.line, move.points[:1]))
+        drawn[-1][1].extend(move.points[1:])
+        fresh = False
+    return drawn
+
+
+class _Down:
+    """Whether a tool at a height is down.
+
+    Args:
+        limit: height from which on it is up.
+        sign: -1 if down is up.
+    """
+
+    def __init__(self, limit: float, *, sign: int) -> None:
+        self._limit, self._sign = limit, sign
+
+    def __call__(self, height: float | None) -> bool:
+        return height is not None and self._sign * (height - self._limit) < 0
+
+
+def _down(used: _Used, stated: set[float]) -> _Down | None:
+    """What tells whether the tool is down; None if its height says nothing.
+
+    Args:
+        stated: all heights of a spindle, also those at which it does not move in the plane.
+    """
+    heights = used.rapid | used.feed
+    if not used.feed:
+        return None
+    low, high = min(heights), max(heights | stated)
+    if used.rapid and max(used.rapid) < min(used.feed):
+        return _Down((max(used.rapid) + min(used.feed)) / 2, sign=-1)
+    if low < 0 <= high:
+        return _Down(0.0, sign=1)
+    high = max(heights)
+    return _Down((low + high) / 2, sign=1) if low < high else None
+
+
+def _check(words: Iterable[str], bare: str, line: int) -> None:
+    """Refuse codes that would change the lines, and unknown ones.
 
     Raises:
-        CodedError: a word that is not read, or is repeated.
+        CodedError: there is one.
     """
-    words, place, end = dict[str, float](), 0, len(bare.rstrip())
-    while place < end:
-        found = _WORD.match(bare, place)
-        if found is None:
-            column, text = _at(bare, place)
-            raise CodedError("error.gcode_word", line=str(line), column=column, text=text)
-        letter, number = found[1], found[2]
-        name, value = letter, float(number)
-        if letter in "GM":
-            whole, _, rest = number.partition(".")
-            name += whole.lstrip("0") or "0" if not rest.strip("0") else number
-        if name not in _KNOWN or not isfinite(value):
-            column, text = _at(bare, place)
-            raise CodedError("error.gcode_word", line=str(line), column=column, text=text)
-        if name in words:
-            column, text = _at(bare, place)
-            raise CodedError("error.gcode_twice", line=str(line), column=column, text=text)
-        words[name] = value
-        place = found.end()
-    return words
+    axes = {*words} & {"X", "Y"}
+    for name in words:
+        why = CHANGING.get(name)
+        if name in ("G10", "G52") and not axes:
+            why = None
+        if name == "G53" and axes and not {*words} & {"G0", "G00"}:
+            why = "origin"
+        known = name in OBEYED or name in WITHOUT_EFFECT or name in CHANGING
+        if why is None and not known and re.fullmatch(r"G[\d.]+", name):
+            why = "unknown"
+        if why is not None:
+            column = column_of(bare, name)
+            raise CodedError(
+                "error.gcode_changes", line=str(line), column=column, text=name, why=why
+            )
 
 
-def _at(bare: str, place: int) -> tuple[str, str]:
-    """Column and text of the word at a place of a line, for a message."""
-    begin = place + len(bare[place:]) - len(bare[place:].lstrip())
-    word = re.match(r"\S[^A-Z\s]*", bare[begin:])
-    return str(begin + 1), repr((word[0] if word else bare[begin:])[:20])
-
-
-def _obey(machine: _Machine, words: dict[str, float], line: int) -> None:
+def _obey(machine: _Machine, words: Words, line: int) -> None:
     """Do what a line says."""
     machine.motion = _code(words, MOTIONS, machine.motion, line)
     machine.unit = _code(words, SIZES, machine.unit, line)
-    machine.relative = _code(words, WAYS, machine.relative, line)
-    without_effect = WITHOUT_EFFECT | LETTERS_WITHOUT_EFFECT
-    machine.without_effect.update((name, None) for name in words if name in without_effect)
-    moves = words.keys() & set("XYIJR")
-    if not moves and "Z" not in words:
-        return
+    machine.plane = _code(words, PLANES, machine.plane, line)
+    machine.absolute_centres = _code(words, CENTRES, machine.absolute_centres, line)
+    relative = _code(words, WAYS, machine.relative, line)
+    if words.keys() & {"G90", "G91"}:
+        machine.relative_extrusion = relative
+    machine.relative = relative
+    _switch(machine, words)
+    for name in words:
+        if len(name) > 1 and name not in OBEYED and name not in ENDS and not _is_fan(machine, name):
+            machine.without_effect[name] = None
     if "G4" in words:  # X may be a time
-        raise CodedError("error.gcode_both", line=str(line), text=f"G4, {min(moves | {'Z'})}")
-    if machine.motion is None:
-        raise CodedError("error.gcode_no_motion", line=str(line))
-    if "Z" in words:
-        below = machine.height if machine.relative else 0.0
-        height = below + machine.unit * words["Z"]
-        machine.lift(height, moves=bool(moves), line=line)
-    if not moves:
         return
-    base = machine.at if machine.relative else (0.0, 0.0)
+    if words.keys() & {"G92", "G92.1"}:
+        _restate(machine, words)
+    elif words.keys() & {"G28", "G30"}:
+        axes = words.keys() & set("XYZ") or set("XYZ")
+        x, y = (0.0 if name in axes else machine.at[i] for i, name in enumerate("XY"))
+        machine.at = (x, y)
+        machine.height = None if "Z" in axes else machine.height
+        machine.rest()
+    elif words.keys() & set("XYZIJR"):
+        _move(machine, words, line)
+    elif "E" in words:
+        _extrude(machine, words)
+
+
+def _is_fan(machine: _Machine, name: str) -> bool:
+    return machine.fan and name in ("M106", "M107")
+
+
+def _switch(machine: _Machine, words: Words) -> None:
+    """Switch a laser, a spindle or a servo, and the way in which E counts."""
+    if words.keys() & {"M82", "M83"}:
+        machine.relative_extrusion = "M83" in words
+    if machine.fan and words.keys() & {"M106", "M107"}:
+        machine.on = "M106" in words
+        return
+    if words.keys() & {"M280", "M300"}:
+        if "S" in words:
+            machine.pen = machine.pens.last = words["S"]
+        return
+    if "S" in words and "G4" not in words and "T" not in words:
+        machine.power = words["S"]
+        if machine.power:
+            machine.powers.last = machine.power
+    if words.keys() & {"M3", "M4"}:
+        machine.on = True
+    elif "M5" in words:
+        machine.on = False
+
+
+def _restate(machine: _Machine, words: Words) -> None:
+    """State that the tool is at another place than the one where it is, without moving it."""
+    if "E" in words:
+        machine.extruded = words["E"]
+    if "G92.1" in words:
+        machine.shift = (0.0, 0.0)
+    elif words.keys() & {"X", "Y"}:
+        x, y = (
+            machine.at[i] - machine.unit * words[name] if name in words else machine.shift[i]
+            for i, name in enumerate("XY")
+        )
+        machine.shift = (x, y)
+    if "Z" in words:
+        machine.height = machine.unit * words["Z"]
+
+
+def _extrude(machine: _Machine, words: Words) -> bool:
+    """Bring material; returns whether any comes."""
+    if "E" not in words:
+        return False
+    before = 0.0 if machine.relative_extrusion else machine.extruded
+    grows = words["E"] > before + 1e-9
+    if not machine.relative_extrusion:
+        machine.extruded = words["E"]
+    return grows
+
+
+def _move(machine: _Machine, words: Words, line: int) -> None:
+    """Move the tool."""
+    before = machine.height
+    if "Z" in words:
+        below = (machine.height or 0.0) if machine.relative else 0.0
+        machine.height = below + machine.unit * words["Z"]
+        machine.stated.add(machine.height)
+    draws = _extrude(machine, words)
     x, y = (
-        base[i] + machine.unit * words[name] if name in words else machine.at[i]
+        machine.at[i]
+        if name not in words
+        else machine.unit * words[name] + (machine.at if machine.relative else machine.shift)[i]
         for i, name in enumerate("XY")
     )
     if machine.motion < 2:
-        if moves & set("IJR"):
+        if words.keys() & set("IJR") and machine.motion == 1:
             raise CodedError("error.gcode_no_arc", line=str(line))
-        machine.go([(x, y)], line)
+        points = [(x, y)]
+        if hypot(x - machine.at[0], y - machine.at[1]) < STILL:
+            if machine.height != before:
+                machine.rest()
+            return
     else:
-        machine.go(_arc(machine, words, (x, y), line), line)
+        if machine.plane != 17:
+            raise CodedError("error.gcode_plane", line=str(line), text=f"G{machine.plane}")
+        points = _arc(machine, words, (x, y), line)
+    machine.go(points, before, line, draws=draws)
 
 
-def _code(words: dict[str, float], codes: Mapping[str, T], before: T, line: int) -> T:
+def _code(words: Words, codes: Mapping[str, T], before: T, line: int) -> T:
     """The meaning of the one of these G codes that a line has; the one before if it has none."""
     found = [code for code in codes if f"G{code}" in words]
     if len(found) > 1:
@@ -183,7 +461,7 @@ def _code(words: dict[str, float], codes: Mapping[str, T], before: T, line: int)
     return codes[found[0]] if found else before
 
 
-def _arc(machine: _Machine, words: dict[str, float], end: Point, line: int) -> list[Point]:
+def _arc(machine: _Machine, words: Words, end: Point, line: int) -> list[Point]:
     """Points of an arc after its beginning."""
     begin, clockwise = machine.at, machine.motion == 2
     if ("R" in words) == bool(words.keys() & {"I", "J"}):
@@ -191,7 +469,8 @@ def _arc(machine: _Machine, words: dict[str, float], end: Point, line: int) -> l
     if "R" in words:
         x, y = _centre(begin, end, machine.unit * words["R"], clockwise, line)
     else:
-        x, y = (begin[i] + machine.unit * words.get(name, 0.0) for i, name in enumerate("IJ"))
+        base = machine.shift if machine.absolute_centres else begin
+        x, y = (base[i] + machine.unit * words.get(name, 0.0) for i, name in enumerate("IJ"))
     first, last = (hypot(p[0] - x, p[1] - y) for p in (begin, end))
     if not first or abs(first - last) > max(UNEVEN * first, ROUNDED):
         one, other = f"{1e3 * first:.4g}", f"{1e3 * last:.4g}"

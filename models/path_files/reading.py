@@ -222,8 +222,7 @@ def _strokes(
         usual = UNITS["px"]
     elif name.lower().endswith(GCODE) or _GCODE.match(head):
         text = text_of(data, encoding_of(data[:4]))
-        strokes, words = strokes_of_gcode(text)
-        remarks = [Message("say.gcode_words", {"words": ", ".join(words)})] if words else []
+        strokes, remarks = strokes_of_gcode(text, layer)
         usual = UNITS["mm"]
     else:
         return [stroke_of_table(data, unit)], []

@@ -158,10 +158,9 @@ TOOLS = {
 def test_words_without_effect_are_told_once() -> None:
     found = read(TOOLS["a mill's"], "a.nc")
     told = [str(remark) for remark in found.remarks if remark.code == "say.gcode_words"]
-    words = "T, M6, G17, G40, G49, G80, G94, G54, S, M3, M8, G4, P, F, M5, M9"
-    assert told == [f"These words of the file have no effect on the path: {words}."]
-    silent = re.sub(" F300", "", TOOL)
-    assert "say.gcode_words" not in [remark.code for remark in read(silent, "a.nc").remarks]
+    words = "M6, G40, G49, G80, G94, G54, M8, G4, M9"
+    assert told == [f"These codes of the file have no effect on the path: {words}."]
+    assert "say.gcode_words" not in [remark.code for remark in read(TOOL, "a.nc").remarks]
 
 
 def test_a_raised_tool_ends_a_line() -> None:
@@ -169,7 +168,7 @@ def test_a_raised_tool_ends_a_line() -> None:
     text = "G21\nG0 X0 Y0 Z5\n" + "".join(
         f"G1 X{x} Y0\nG1 Z-1\nX{x + 30}\nY40\nG1 Z5\n" for x in (0, 100)
     )
-    for part, x in ((2, 0.0), (4, 0.1)):
+    for part, x in ((1, 0.0), (2, 0.1)):
         points = strokes_of_gcode(text)[0][part - 1].points
         np.testing.assert_allclose(points, [[x, 0], [x + 0.03, 0], [x + 0.03, 0.04]], atol=1e-12)
 
@@ -255,6 +254,7 @@ def test_a_path_is_placed_and_scaled_on_request() -> None:
             assert (low + high) / 2 == pytest.approx(centre)
 
 
+@settings(max_examples=20)
 @given(st.floats(-360, 360))
 def test_a_turn_turns_the_lines_about_the_centre_of_their_box(turn: float) -> None:
     before = path_through(CORNERS, Placing(centre=(0, 0), closed=True)).curve.given
@@ -344,14 +344,17 @@ REFUSED: dict[str, tuple[str | bytes, str, str]] = {
     "two units": ("x_mm,y_m\n1,2\n", "a.csv", "line 1: x and y have different units"),
     "large": ("50,0\n0,40\n-50,0\n", "a.csv", "reaches 50 m from the origin"),
     "two points": ("0.05,0\n0.05,0\n", "a.csv", "at least 3 points"),
-    "lifted": ("G0 X0 Y0\nG1 Z-1 X3\n", "a.nc", "line 2: the tool changes its height"),
-    "a helix": ("G0 X0 Y0\nG2 X0 Y0 Z-1 I3\n", "a.nc", "line 2: the tool changes its height"),
-    "a subprogram": ("G21\nM98 P2\n", "a.nc", "line 2, column 1: 'M98'"),
-    "a pause of X seconds": ("G0 X1\nG4 X3\n", "a.nc", "line 2: G4, X contradict"),
-    "another offset": ("G92 X0 Y0\n", "a.nc", "line 1, column 1: 'G92'"),
-    "compensated": ("G21\nG41 X3\n", "a.nc", "line 2, column 1: 'G41'"),
+    "a subprogram": ("G21\nM98 P2\n", "a.nc", "line 2, column 1: M98 runs another program"),
+    "another offset": ("G21\nX0 G10 L2 Y3\n", "a.nc", "line 2, column 4: G10 moves the origin"),
+    "another origin": ("G1 X3\nG55\n", "a.nc", "line 2, column 1: G55 moves the origin"),
+    "a turned program": ("G68 R30\n", "a.nc", "line 1, column 1: G68 scales, turns"),
+    "an unknown code": ("G1 X3\n G77.5 X3", "a.nc", "line 2, column 2: G77.5 is not known"),
+    "an arc upwards": ("G18\nG1 X3\nG2 X5 R3", "a.nc", "line 3: an arc in another plane"),
+    "a rotary axis": ("G1 X3 A30\n", "a.nc", "line 1, column 7: 'A30' is not read"),
+    "a variable": ("#1=3\nG1 X#1", "a.nc", "line 1, column 1: '#1=3' is not read"),
+    "compensated": ("G21\nG41 X3\n", "a.nc", "line 2, column 1: G41 moves the path aside"),
     "a bare letter": ("G1 X\n", "a.nc", "line 1, column 4: 'X'"),
-    "no motion": ("X3 Y4\n", "a.nc", "line 1: no G0 to G3"),
+    "no motion": ("X3 Y4\n", "a.nc", "no line that could be a path"),
     "two motions": ("G0 G1 X3\n", "a.nc", "line 1: G0, G1"),
     "X twice": ("G1 X3 X4\n", "a.nc", "line 1, column 7: 'X4'"),
     "arc without centre": ("G2 X3 Y4\n", "a.nc", "line 1: an arc needs"),
