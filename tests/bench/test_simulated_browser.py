@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import math
 from collections.abc import Iterator
 from contextlib import aclosing, contextmanager
 from itertools import cycle
@@ -30,7 +29,7 @@ from onpath.models.closed_loop.simulation import (
 )
 from onpath.models.paths.curves import circle
 from onpath.models.systems.catalogue import ROBOTS
-from tests.bench.attacks import Script
+from tests.bench.attacks import scripts
 from tests.bench.simulated_browser import Browser, NotServed, Observations, crowd, first_poses
 
 WAIT = 60.0  # [s]; only ends a test that would hang
@@ -79,8 +78,8 @@ def test_what_a_script_says_reaches_its_lab_also_after_it_was_hung_up_on() -> No
     server = LabServer("127.0.0.1", 0, LoopCache())
 
     async def attack() -> None:
-        script = Script(server.server.get_port(), lambda draw: next(said))
-        browsing = asyncio.create_task(script.browse(math.inf))
+        speaks = scripts(1, lambda draw: next(said))
+        browsing = asyncio.create_task(speaks(server.server.get_port()))
         async with asyncio.timeout(WAIT):
             while all(lab.simulation.parameters.K1 != 77.0 for lab in server.thread.labs):
                 await asyncio.sleep(0.05)

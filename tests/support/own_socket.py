@@ -52,6 +52,7 @@ class OwnSocket:
             subprotocols=[Subprotocol(SUBPROTOCOL)],
             compression=None,
             close_timeout=0.5,
+            ping_interval=None,  # a browser does not ping
             max_size=None,
         )
         self._socket.send(hello(self.page, **kept))

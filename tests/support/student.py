@@ -120,6 +120,7 @@ class Student:
             compression=None,
             max_size=None,
             close_timeout=1.0,
+            ping_interval=None,  # a browser does not ping
         )
 
     def reopen(self) -> None:
