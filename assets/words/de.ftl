@@ -1481,12 +1481,12 @@ say-repeats = { $count ->
    *[other] { $count } Linien wiederholen andere und werden
 } einmal gezeichnet.
 say-specks = { $count ->
-    [one] Ein Fleck, kleiner als ein halbes Prozent der Zeichnung, wird
-   *[other] { $count } Flecken, kleiner als ein halbes Prozent der Zeichnung, werden
+    [one] Ein Fleck, kleiner als ein Fünfhundertstel der Zeichnung, wird
+   *[other] { $count } Flecken, kleiner als ein Fünfhundertstel der Zeichnung, werden
 } weggelassen.
 say-svg_filled = { $count ->
-    [one] Eine gefüllte Form ohne Linie wird
-   *[other] { $count } gefüllte Formen ohne Linie werden
+    [one] Eine kleine gefüllte Form, etwa ein Buchstabe oder Punkt, wird
+   *[other] { $count } kleine gefüllte Formen, etwa Buchstaben und Punkte, werden
 } weggelassen. Mit einer Konturlinie werden sie gezeichnet.
 say-svg_left_out = { $what ->
     [image] Bilder in der Zeichnung haben keine Linien und werden weggelassen. Nachgezeichnet hätten sie welche (in Inkscape: Pfad > Bitmap nachzeichnen).
@@ -1536,6 +1536,7 @@ error-svg_entity = Zeile { $line }: die Entität { $name } steht nicht für blo�
 error-svg_grows = Zeile { $line }: Entitäten machen die Zeichnung viel länger als die Datei
 error-svg_styles = Zeile { $line }: die Stilregeln der Zeichnung sind zu viele für ihre Elemente
 error-svg_only = { $what ->
+    [font] die Datei ist eine Schrift, keine Zeichnung: schreibe Text in ihr und wandle ihn in Pfade um (in Inkscape: Pfad > Objekt in Pfad umwandeln)
     [image] die Zeichnung ist ein Bild, das keine Linien hat: zeichne es nach (in Inkscape: Pfad > Bitmap nachzeichnen)
    *[text] die Zeichnung ist Text, der keine Linien hat: wandle ihn in Pfade um (in Inkscape: Pfad > Objekt in Pfad umwandeln; in Illustrator: Schrift > In Pfade umwandeln)
 }

@@ -1075,10 +1075,10 @@ say-repeats = { $count ->
 say-specks = { $count ->
     [one] A speck is
    *[other] { $count } specks are
-} left out: smaller than half a percent of the drawing.
+} left out: smaller than a 500th of the drawing.
 say-svg_filled = { $count ->
-    [one] A filled shape without a line is
-   *[other] { $count } filled shapes without a line are
+    [one] A small filled shape, such as a letter or a dot, is
+   *[other] { $count } small filled shapes, such as letters and dots, are
 } left out. To draw them, give them a stroke.
 say-svg_left_out = { $what ->
     [image] Pictures in the drawing have no lines and are left out. To draw them, trace them (in Inkscape, Path > Trace Bitmap).
@@ -1128,6 +1128,7 @@ error-svg_entity = line { $line }: the entity { $name } does not stand for plain
 error-svg_grows = line { $line }: entities make the drawing much longer than the file
 error-svg_styles = line { $line }: the drawing's style sheets have too many rules for its elements
 error-svg_only = { $what ->
+    [font] the file is a font, not a drawing: write text in it, and convert the text to paths (in Inkscape, Path > Object to Path)
     [image] the drawing is a picture, which has no lines: trace it (in Inkscape, Path > Trace Bitmap)
    *[text] the drawing is text, which has no lines: convert it to paths (in Inkscape, Path > Object to Path; in Illustrator, Type > Create Outlines)
 }

@@ -24,6 +24,7 @@ without effect on the lines are listed. Those that would change them are refused
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from math import atan2, ceil, cos, hypot, pi, sin, sqrt
@@ -44,10 +45,12 @@ SIZES = {"20": UNITS["in"], "21": UNITS["mm"]}
 WAYS = {"90": False, "91": True}
 CENTRES = {"90.1": True, "91.1": False}
 PLANES = {"17": 17, "18": 18, "19": 19}
+STILL_CODES = frozenset(("G4", "G31", "G38.2", "G38.3", "G38.4", "G38.5"))
+"""Codes whose axes are no place on a line: a pause may have its time as X, and probes end early."""
 OBEYED = frozenset(
     f"G{code}" for code in (*MOTIONS, *SIZES, *WAYS, *CENTRES, *PLANES, 28, 30, 92, 92.1)
 ) | {"M3", "M4", "M5", "M82", "M83", "M280", "M300"}
-WITHOUT_EFFECT = frozenset(
+WITHOUT_EFFECT = STILL_CODES | frozenset(
     f"G{code}"
     for code in (
         *(
@@ -88,6 +91,7 @@ CHANGING = {
 ENDS = frozenset(("M2", "M30"))
 _PRINTS = re.compile(r"[XY].*E\s*[-+]?\.?\d")
 _SWITCHES = re.compile(r"M0*[34](?!\d)")
+_POWER = re.compile(r"S\s*[0.]*[1-9]")
 _LAYER = re.compile(r"\s*;\s*(?:LAYER:\s*-?\d+|LAYER_CHANGE|CHANGE_LAYER)\b", re.IGNORECASE)
 Point = tuple[float, float]
 T = TypeVar("T")
@@ -116,20 +120,23 @@ class _Move:
 
 @dataclass(slots=True)
 class _Used:
-    """Values that a state has while the tool moves in the plane, and the last one."""
+    """Values of a state while the tool moves in the plane, and all that are stated, in order."""
 
     rapid: set[float] = field(default_factory=set[float])
     feed: set[float] = field(default_factory=set[float])
-    last: float | None = None
+    stated: list[float] = field(default_factory=list[float])
+    counts: Counter[float] = field(default_factory=Counter[float])
 
-    def raised(self) -> float | None:
-        """The one of two states in which a servo holds the pen up; None if there is none."""
-        if len(self.rapid | self.feed) != 2:
-            return None
-        travel = self.rapid - self.feed
-        if len(travel) == 1:
-            return next(iter(travel))
-        return self.last if not self.rapid else None
+    def raised(self) -> frozenset[float]:
+        """The states in which a servo holds the pen up: all but the one that draws."""
+        used = self.rapid | self.feed
+        two = sorted(used, key=lambda value: -self.counts[value])[:2]  # others: it is off
+        if len(two) < 2:
+            return frozenset()
+        travel = [value for value in two if value in self.rapid - self.feed]
+        if not self.rapid:
+            travel = [value for value in reversed(self.stated) if value in two][:1]
+        return frozenset(used - {*two}) | {*travel[:1]}
 
 
 @dataclass(slots=True)
@@ -140,6 +147,7 @@ class _Machine:
         prints: whether the file is that of a printer.
         marked: whether comments mark the layers of a print.
         wanted: the layer of a print that is read, from 1.
+        has_power: whether any S is more than 0; else only M3, M4 and M5 switch.
         spindle: whether M3 or M4 switches a spindle or laser; else, with `fan`, M106 does.
         moves: those that may draw; None where a line ends.
     """
@@ -147,6 +155,7 @@ class _Machine:
     prints: bool
     marked: bool
     wanted: int
+    has_power: bool
     spindle: bool
     fan: bool
     at: Point = (0.0, 0.0)
@@ -192,6 +201,7 @@ class _Machine:
         ):
             if value is not None:
                 (used.feed if self.motion else used.rapid).add(value)
+                used.counts[value] += 1
         if draws and not self.marked and self.height != self.layer_height:
             self.layer, self.layer_height = self.layer + 1, self.height
         wanted = draws and self.layer == self.wanted if self.prints else self.motion > 0
@@ -220,6 +230,7 @@ def strokes_of_gcode(text: str, layer: str | None = None) -> tuple[list[Stroke],
         prints=any(_PRINTS.search(line) for line in lines),
         marked=any(_LAYER.match(line) for line in comments),
         wanted=int(layer) if layer and re.fullmatch(r"0*[1-9]\d{0,8}", layer, re.ASCII) else 1,
+        has_power=any(_POWER.search(line) for line in lines),
         spindle=any(_SWITCHES.search(line) for line in lines),
         fan=any("M106" in line for line in lines) and any("M107" in line for line in lines),
     )
@@ -263,17 +274,17 @@ def _remarks(machine: _Machine) -> list[Message]:
 
 def _lines(machine: _Machine) -> list[tuple[int, list[Point]]]:
     """Number in the file and points of the lines that are drawn."""
-    pen = machine.pens.raised()
+    pen, power = machine.pens.raised(), frozenset({0.0})
     is_down = _down(machine.heights, machine.stated if machine.spindle else set())
-    power = None
-    if 0.0 not in machine.powers.rapid | machine.powers.feed:
-        power = machine.powers.raised() if is_down is None else None
+    powers = machine.powers.rapid | machine.powers.feed
+    if is_down is None and len(powers) == 2 and 0.0 not in powers:
+        power = machine.powers.raised()
     drawn, fresh = list[tuple[int, list[Point]]](), True
     for move in machine.moves:
         draws = (
             move is not None
-            and (pen is None or move.pen not in (pen, None))
-            and (move.draws if machine.prints else move.power not in (0.0, power))
+            and (not pen or (move.pen is not None and move.pen not in pen))
+            and (move.draws if machine.prints else move.power not in power)
             and (machine.prints or is_down is None or any(map(is_down, move.heights)))
         )
         if move is None or not draws:
@@ -356,7 +367,7 @@ def _obey(machine: _Machine, words: Words, line: int) -> None:
     for name in words:
         if len(name) > 1 and name not in OBEYED and name not in ENDS and not _is_fan(machine, name):
             machine.without_effect[name] = None
-    if "G4" in words:  # X may be a time
+    if words.keys() & STILL_CODES:
         return
     if words.keys() & {"G92", "G92.1"}:
         _restate(machine, words)
@@ -385,12 +396,12 @@ def _switch(machine: _Machine, words: Words) -> None:
         return
     if words.keys() & {"M280", "M300"}:
         if "S" in words:
-            machine.pen = machine.pens.last = words["S"]
+            machine.pen = words["S"]
+            machine.pens.stated.append(words["S"])
         return
-    if "S" in words and "G4" not in words and "T" not in words:
+    if "S" in words and "G4" not in words and machine.has_power:
         machine.power = words["S"]
-        if machine.power:
-            machine.powers.last = machine.power
+        machine.powers.stated.append(words["S"])
     if words.keys() & {"M3", "M4"}:
         machine.on = True
     elif "M5" in words:

@@ -11,7 +11,7 @@ LONGEST_LINE = 1000  # [characters]
 LETTERS = frozenset("XYZIJKREFSTHPDLQ")
 """Letters of words besides codes, N and O; those of other axes are refused."""
 FIRST_OWN = 20  # from this number on, M codes differ from machine to machine, and may have texts
-_COMMENT = re.compile(r"\([^()]*\)|;.*|\*\d+\s*$")  # the last one is a checksum
+_COMMENT = re.compile(r"\([^()]*\)|\*\d+\s*$")  # and a checksum
 _MACRO = re.compile(r"\s*(\$\S{0,10}|[A-Z][A-Z_]{2}[A-Z_0-9]{0,20})")
 _WORD = re.compile(r"\s*([A-Z])\s*([-+]?(?:\d+\.?\d*|\.\d+))", re.ASCII)
 Words = dict[str, float]
@@ -25,9 +25,10 @@ def bare_lines(text: str) -> list[str]:
     """
     lines = list[str]()
     for number, line in enumerate(text.splitlines(), start=1):
-        if len(line) > LONGEST_LINE:
+        code = line.partition(";")[0].upper()
+        if len(code) > LONGEST_LINE:
             raise CodedError("error.table_long_line", line=str(number), most=str(LONGEST_LINE))
-        bare = _COMMENT.sub(lambda found: " " * len(found[0]), line.upper())
+        bare = _COMMENT.sub(lambda found: " " * len(found[0]), code)
         lines.append(re.sub(r"^\s*[/%]", lambda found: " " * len(found[0]), bare))
     return lines
 

@@ -13,7 +13,7 @@ from onpath.models.arrays import Array
 from onpath.models.path_files.stroke import Stroke
 
 TOUCHING = 1e-3  # of the drawing's size, largest distance of ends that are joined
-SPECK = 5e-3  # of the drawing's size, of lines that are too small to be seen
+SPECK = 2e-3  # of the drawing's size, of lines that are too small to be seen
 ROUNDED = 7  # decimals of equal coordinates, [m]
 End = tuple[int, bool]
 """Number of a piece, and whether its last point is meant."""

@@ -4,9 +4,10 @@ Lengths and places are those that a browser gives them: transforms, styles, view
 `use` count. Where nothing states a size, a unit of the drawing is 1/96 of an inch. The y axis
 points up, as in the plane of a path. Clips, dashes and animations have no effect.
 
-Of a drawing with lines, its shapes that are only filled are left out; else their outlines are the
-lines. What paints nothing, or white on white, is drawn only if nothing else is there; hidden layers
-and definitions are not. Text and pictures have no lines, and are said to be left out.
+Outlines of filled shapes are lines, too; beside strokes, small ones are left out, which are
+letters, dots and heads of arrows. What paints nothing, or white on white, is drawn only if nothing
+else is there; hidden layers and definitions are not. Text and pictures have no lines, and are said
+to be left out.
 
 Paths are read by svgpathtools and style sheets by tinycss2, an extra of OnPath. The file is
 untrusted: what multiplies it, such as entities and `use`, is bounded.
@@ -59,7 +60,8 @@ LONGEST_NAME = 40  # of a line, as far as a message quotes it
 GROUPS = ("g", "a", "svg", "symbol", "switch")
 LEFT_OUT = ("text", "image", "foreignObject")
 USUAL = 300.0, 150.0  # [px], size of a drawing that states none
-REACHING = 0.5  # of the drawing's size, from which on its lines are the drawing
+SMALL = 0.1  # of the drawing's size, of letters, dots and heads of arrows
+FONT = "glyph"
 
 
 class Paint(IntEnum):
@@ -117,6 +119,8 @@ def strokes_of_svg(data: bytes, layer: str | None = None) -> tuple[list[Stroke],
         if layer is not None:
             names = ", ".join(dict.fromkeys(reader.layers)) or "–"
             raise CodedError("error.file_layer", layer=layer[:LONGEST_NAME], names=names[:200])
+        if any(each.tag == FONT for each in root.iter()):
+            raise CodedError("error.svg_only", what="font")
         for tag in LEFT_OUT:
             if tag in reader.left_out:
                 raise CodedError("error.svg_only", what="image" if tag == "image" else "text")
@@ -128,10 +132,12 @@ def _shown(outlines: list[_Outline], reader: _DrawingReader) -> tuple[list[Strok
     """The lines that a reader of the drawing would call its lines."""
     seen = [each for each in outlines if each.paint < Paint.UNSEEN and not reader.is_ground(each)]
     seen = seen or [each for each in outlines if each.paint < Paint.UNSEEN] or outlines
-    lines = [each for each in seen if each.paint == Paint.LINE]
     remarks = list[Message]()
-    if 0 < len(lines) < len(seen) and _size(lines) >= REACHING * _size(seen):
-        remarks.append(Message("say.svg_filled", {"count": len(seen) - len(lines)}))
+    if any(each.paint == Paint.LINE for each in seen):
+        size = SMALL * _size(seen)
+        lines = [each for each in seen if each.paint == Paint.LINE or _size([each]) >= size]
+        if len(lines) < len(seen):
+            remarks.append(Message("say.svg_filled", {"count": len(seen) - len(lines)}))
         seen = lines
     if reader.left_out:
         only = "image" if reader.left_out == {"image"} else "text"

@@ -46,6 +46,10 @@ SIDES: Mapping[str, float] = {"left": 0, "top": 0, "center": 0.5, "right": 1, "b
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _LENGTH = re.compile(rf"\s*({_NUMBER})\s*(%|[a-zA-Z]*)\s*", re.ASCII)
 _FUNCTION = re.compile(r"[\s,]*([a-zA-Z]+)\s*\(([^()]*)\)[\s,]*")
+_GAP = r"[\s,]*"
+_ARC = re.compile(
+    _GAP.join([_NUMBER, _NUMBER, _NUMBER, "[01]", "[01]", f"({_NUMBER})", f"({_NUMBER})"]) + _GAP
+)
 _ALIGNED = re.compile(r"\s*x(Min|Mid|Max)Y(Min|Mid|Max)(?:\s+(meet|slice))?\s*")
 _SHARES = {"Min": 0.0, "Mid": 0.5, "Max": 1.0}
 Box = tuple[float, float, float, float]
@@ -215,8 +219,12 @@ Get = Callable[[str], float | None]
 def _path(given: Given, counted: Callable[[int], object]) -> Iterator[Array]:
     from svgpathtools import parse_path
 
-    part, end = list[Array](), None
-    for piece in parse_path(given("d") or ""):
+    part, end, text = list[Array](), None, given("d") or ""
+    try:
+        path = parse_path(text)
+    except AssertionError:  # of an arc that ends where it begins, which is none
+        path = parse_path(re.sub(r"a([^A-DF-Za-df-z]*)", _without_points, text))
+    for piece in path:
         points = _points(piece)
         counted(len(points) - 1)
         if end is None or abs(piece.start - end) > 1e-9 * max(1.0, abs(end)):
@@ -227,6 +235,12 @@ def _path(given: Given, counted: Callable[[int], object]) -> Iterator[Array]:
         end = piece.end
     if part:
         yield np.vstack(part)
+
+
+def _without_points(arcs: re.Match[str]) -> str:
+    """Relative arcs without those that end where they begin."""
+    kept = _ARC.sub(lambda each: each[0] if float(each[1]) or float(each[2]) else " ", arcs[1])
+    return f"a{kept}" if kept.strip(" ,") else " "
 
 
 def _points(piece: Line | Arc) -> Array:

@@ -64,6 +64,12 @@ WAYS: dict[str, Callable[[Lines], str]] = {
     "servo": lambda z: written(
         z, "M280 P0 S40\nG4 P150", "M280 P0 S90", "M280 P0 S90", "G1 X0 Y0", travel="G1"
     ),
+    "servo that is switched off": lambda z: written(
+        z, "M300 S30", "M300 S50", "M300 S50", "M300 S255\nG1 X0 Y0\nM18", travel="G1"
+    ),
+    "laser whose power is set at the machine": lambda z: written(
+        z, "M3 S0", "M5 S0", "M5", travel="G1"
+    ),
     "servo with G0": lambda z: written(z, "M300 S30", "M300 S50", "M300 S50", "G0 X0 Y0\nM18"),
     "servo of a spindle": lambda z: written(z, "M3 S30", "M3 S90", "M3 S90", "G0 X0 Y0"),
     "printer": lambda z: printed(z, relative=False),
@@ -153,7 +159,8 @@ def test_a_stated_place_moves_the_coordinates_and_not_the_tool() -> None:
 
 def test_what_has_no_effect_is_listed_shortly() -> None:
     text = "\n".join(f"M{code} S1" for code in range(500, 520)) + "\nM117 a text: 1, 2 (x)\n"
+    text += ";" + "x" * 5000 + "\nG31 X50 Z-3\n"
     macros = "SET_VELOCITY_LIMIT ACCEL=3000\nG4 X3\nN5 G1 X3 Y4*87\n/G1 X5\n"
     strokes, (remark,) = strokes_of_gcode(text + macros)
     assert len(strokes) == 1 and len(strokes[0].points) == 3
-    assert "M500, M501" in str(remark) and "and 11 more." in str(remark)
+    assert "M500, M501" in str(remark) and "and 12 more." in str(remark)
