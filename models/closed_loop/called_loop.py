@@ -75,9 +75,9 @@ class CalledLoop(Loop):
     def __init__(self, robot: Robot, kind: Kind, law: Law, kernel: Kernel, loop: Loop) -> None:
         assert law.called is not None and law.origin is not None
         self.layouts, self._loop, self._law = kernel.layouts, loop, law
-        self._basis, self._seen = Buffered(kernel.basis), _seen(robot, kind, law)
+        self._values, self._seen = Buffered(kernel.at()), _seen(robot, kind, law)
         self._p, self._origin = robot.system.p, law.origin
-        self._table_shape, self._changed = kernel.table_shape, kernel.changed
+        self._changed = kernel.changed
         self._before: tuple[Array, _Progress] | None = None
         self._now: _Progress | None = None
 
@@ -125,8 +125,7 @@ class CalledLoop(Loop):
         """
         given = self.layouts.settings.unpack(settings)
         span = float(given["hold_ticks"][0]) * float(given["dt"][0])
-        basis = self._basis(state[: self._changed], settings)[0]
-        values = table.reshape(self._table_shape, order="F") @ basis
+        values = self._values(state[: self._changed], settings, table)[0]
         assert self._law.called is not None and self._law.origin is not None
         try:
             seen = self._seen(state[: self._changed], settings, values, 0, span)
@@ -173,8 +172,7 @@ class CalledLoop(Loop):
         try:
             if now.failure is None:
                 before = state[: self._changed]
-                basis = self._basis(before, settings)[0]
-                values = table.reshape(self._table_shape, order="F") @ basis
+                values = self._values(before, settings, table)[0]
                 given = now.act(self._seen(before, settings, values, now.calls, span))
                 fields[CALLED][: self._p] = _command(given, self._p)
                 now.calls += 1
@@ -202,12 +200,12 @@ def _command(given: Any, p: int) -> Array:
 
 
 def _seen(robot: Robot, kind: Kind, law: Law) -> Callable[..., Now]:
-    """(state, settings, table @ basis, calls so far, interval) -> the argument of the function."""
+    """(state, settings, values, calls so far, interval) -> the argument of the function."""
     system = robot.system
     state_symbol, state = kept_layout(system, kind, law.memory).symbols("state")
     settings_symbol, settings = settings_layout(system, kind).symbols("settings")
     frame = robot.frame if not kind.space or robot.frame.space is None else robot.frame.space
-    values, h = ca.SX.sym("values", kind.table_shape[0], 1), settings["look_ahead"]
+    values, h = ca.SX.sym("values", kind.value_rows, 1), settings["look_ahead"]
     q, v, _ = measure(system, kind, state, settings)
     q, v = look_ahead(system, state, settings, q, v, h)
     beam = beam_estimate(system, state, settings, q, v, h) if kind.output == "composite" else None

@@ -47,7 +47,7 @@ from onpath.models.control.linearization import admissible_along, linearization
 from onpath.models.errors import CodedError
 from onpath.models.layout import Fields
 from onpath.models.paths.frames import Frame
-from onpath.models.paths.projection import basis
+from onpath.models.paths.projection import basis, spline_basis, window, windowed
 from onpath.models.systems import forces
 from onpath.models.systems.system import MechanicalSystem
 
@@ -61,9 +61,10 @@ class Kernel(LoopLayouts):
 
     Attributes:
         basis: (state, settings) -> basis functions of the curve at the parameters that the tick
-            needs, (TERMS, 1 or 2).
-        advance: (state, settings, table @ basis) -> (next state, log row, basis for the next tick).
-            Both take the part of the state that the loop changes.
+            needs, (TERMS, 1 or 2); of a spline (WINDOW, ORDERS or 2 ORDERS), and the numbers of the
+            pieces, (1, 1 or 2).
+        advance: (state, settings, values) -> (next state, log row, basis for the next tick). Both
+            take the part of the state that the loop changes; see `values`.
     """
 
     basis: ca.Function
@@ -79,6 +80,7 @@ class Kernel(LoopLayouts):
             changed=self.changed,
             table_shape=self.table_shape,
             law=self.law,
+            spline=self.spline,
         )
 
     def block(self, ticks: int) -> ca.Function:
@@ -91,20 +93,40 @@ class Kernel(LoopLayouts):
         settings = ca.MX.sym("settings", self.settings.size)
         table = ca.MX.sym("curve", *self.table_shape)
         after, rest = state[: self.changed], state[self.changed :]
-        basis, rows = self.basis(after, settings), list[ca.MX]()
+        found, rows = self.basis.call([after, settings]), list[ca.MX]()
         for _ in range(ticks):
-            after, row, basis = self.advance(after, settings, table @ basis)
+            after, row, *found = self.advance.call([after, settings, self.values(table, found)])
             rows.append(row)
         results = [ca.vertcat(after, rest), ca.horzcat(*rows)]
         return ca.Function("block", [state, settings, table], results)
 
+    def values(self, table: ca.MX, found: list[ca.MX]) -> ca.MX:
+        """σ, σ', σ'' and σ''' at the parameters of the tick, one column each.
+
+        Args:
+            table: `Curve.table` as a matrix.
+            found: results of `basis`.
+        """
+        if not self.spline:
+            return table @ found[0]
+        basis, pieces = found
+        windows = [window(table, piece) for piece in ca.horzsplit(pieces)]
+        return windowed(windows, basis)
+
+    def at(self) -> ca.Function:
+        """(state, settings, curve table) -> `values`."""
+        state, settings = (ca.MX.sym("given", *self.basis.size_in(i)) for i in (0, 1))
+        table = ca.MX.sym("curve", *self.table_shape)
+        found = self.values(table, self.basis.call([state, settings]))
+        return ca.Function("values", [state, settings, table], [found])
+
     def tick(self) -> ca.Function:
-        """One tick, for a compiler: (state, settings, table @ basis) -> (state, log row).
+        """One tick, for a compiler: (state, settings, values) -> (state, log row).
 
         The state consists of the fields that this loop changes.
         """
         inputs = [ca.SX.sym(f"input{i}", *self.advance.size_in(i)) for i in range(3)]
-        after, row, _ = self.advance(*inputs)
+        after, row, *_ = self.advance.call(inputs)
         return ca.Function("onpath_tick", inputs, [after, row])
 
 
@@ -159,6 +181,7 @@ def _kernel(
         basis=bases,
         advance=advance,
         law=layouts.law,
+        spline=layouts.spline,
     )
 
 
@@ -170,14 +193,19 @@ def _space(system: MechanicalSystem, frame: Frame, kind: Kind) -> Frame:
 
 
 def _bases(system: MechanicalSystem, kind: Kind, law: Law) -> ca.Function:
-    """(state, settings) -> basis at the predicted closest point and at the law's reference."""
+    """`Kernel.basis`, at the predicted closest point and at the law's reference."""
     state_symbol, state = kept_layout(system, kind, law.memory).symbols("state")
     settings_symbol, settings = settings_layout(system, kind).symbols("settings")
-    columns = basis(predicted(state, settings), kind.closed)
+    places = [predicted(state, settings)]
     if law.reference is not None:
-        reference = law.reference(clock_at(kind, law, state, settings, settings["look_ahead"]))
-        columns = ca.horzcat(columns, basis(reference, kind.closed))
-    return ca.Function("bases", [state_symbol, settings_symbol], [ca.densify(columns)])
+        places.append(law.reference(clock_at(kind, law, state, settings, settings["look_ahead"])))
+    if kind.spline:
+        found = [spline_basis(theta, kind.closed, settings["pieces"]) for theta in places]
+        results = [ca.horzcat(*each) for each in zip(*found, strict=True)]
+    else:
+        results = [ca.horzcat(*(basis(theta, kind.closed) for theta in places))]
+    outputs = ca.cse([ca.densify(each) for each in results])
+    return ca.Function("bases", [state_symbol, settings_symbol], outputs)
 
 
 def _advance(
@@ -197,7 +225,7 @@ def _advance(
     state_symbol, state = kept_layout(system, kind, law.memory).symbols("state")
     settings_symbol, settings = settings_layout(system, kind).symbols("settings")
     plane = frame.at(settings["plane"])
-    values = ca.SX.sym("values", kind.table_shape[0], 1 if law.reference is None else 2)
+    values = ca.SX.sym("values", kind.value_rows, 1 if law.reference is None else 2)
     measured_q, measured_v, reading = measure(system, kind, state, settings)
     measured, h = (measured_q, measured_v), settings["look_ahead"]
     q, v = look_ahead(system, state, settings, measured_q, measured_v, h)
@@ -228,7 +256,7 @@ def _advance(
     row |= {"u": drive.mean, "force": force} | logged(output)
     row |= {"far": command.far, "integral_used": integral_used(state, settings, command)}
     later = kept_layout(system, kind, law.memory).join(after)
-    outputs = [later, log_layout(system).join(row), bases(later, settings_symbol)]
+    outputs = [later, log_layout(system).join(row), *bases.call([later, settings_symbol])]
     return ca.Function("advance", [state_symbol, settings_symbol, values], ca.cse(outputs))
 
 

@@ -25,14 +25,22 @@ from onpath.models.control.laws.references import clock_rate
 from onpath.models.control.space_output import space_output
 from onpath.models.control.virtual_output import LevelSet, VirtualOutput, virtual_output
 from onpath.models.layout import Fields
+from onpath.models.paths.curves import PERIOD
 from onpath.models.paths.frames import PlaneCoordinates
-from onpath.models.paths.projection import LocalCurve
+from onpath.models.paths.projection import LARGEST_STEP, LocalCurve
 from onpath.models.systems.system import MechanicalSystem
 
 
 def predicted(state: Fields, settings: Fields) -> ca.SX:
-    """The parameter at which the curve is evaluated, θ_0 = θ + dt θ', [rad]."""
-    return state["theta"] + settings["dt"] * state["theta_rate"]
+    """The parameter at which the curve is evaluated, θ_0 = θ + dt θ', [rad].
+
+    It is at most two pieces away from θ, so that no other part of a drawing is taken.
+    """
+    turn = settings["dt"] * state["theta_rate"]
+    if "pieces" in settings:
+        most = ca.fmin(LARGEST_STEP, 2 * PERIOD / settings["pieces"])
+        turn = ca.fmin(ca.fmax(turn, -most), most)
+    return state["theta"] + turn
 
 
 def controlled(
@@ -56,6 +64,9 @@ def coordinates(
     conic = LevelSet(*[settings[name] for name in names])
     level = (kind.level or conic) if kind.level_set else None
     start = LocalCurve.from_values(predicted(state, settings), kind.closed, values)
+    if kind.spline:  # farther away, the polynomial is another curve
+        reach = ca.fmin(LARGEST_STEP, 1.5 * PERIOD / settings["pieces"])
+        start = replace(start, reach=reach)
     closest = start.project(frame.split(y)[0])
     if kind.space:
         return space_output(closest, frame, y, y_rate), closest

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from onpath.models.control.implicit_level import ImplicitLevel
-from onpath.models.paths.curves import SPACE_TABLE_SHAPE, TABLE_SHAPE
+from onpath.models.paths.curves import ORDERS, SPACE_TABLE_SHAPE, TABLE_SHAPE
+from onpath.models.paths.spline_curves import TABLE_POINTS
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +33,8 @@ class Kind:
             instead of a filter.
         further_gains: names of gains of other laws that the settings have besides the law's own:
             the laws of a figure share one vector.
+        spline: whether the path consists of pieces (models/paths/spline_curves.py), not of one
+            series.
     """
 
     law: str
@@ -48,8 +51,21 @@ class Kind:
     space: bool = False
     level: ImplicitLevel | None = None
     further_gains: tuple[str, ...] = ()
+    spline: bool = False
 
     @property
     def table_shape(self) -> tuple[int, int]:
         """Shape of `Curve.table` of its paths."""
+        if self.spline:
+            return self.dimension, TABLE_POINTS
         return SPACE_TABLE_SHAPE if self.space else TABLE_SHAPE
+
+    @property
+    def dimension(self) -> int:
+        """d of its paths."""
+        return 3 if self.space else 2
+
+    @property
+    def value_rows(self) -> int:
+        """Numbers in σ, σ', σ'' and σ''' together."""
+        return ORDERS * self.dimension

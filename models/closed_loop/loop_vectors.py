@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 
 from onpath.models.closed_loop.delay import LONGEST
@@ -27,6 +27,7 @@ class LoopLayouts:
         changed: length of the leading part of the state that the loop changes.
         table_shape: shape of the curve's table.
         law: name of the control law.
+        spline: see `Kind`.
     """
 
     state: Layout
@@ -35,6 +36,7 @@ class LoopLayouts:
     changed: int
     table_shape: tuple[int, int]
     law: str
+    spline: bool = field(default=False, kw_only=True)
 
 
 def loop_layouts(system: MechanicalSystem, kind: Kind) -> LoopLayouts:
@@ -51,6 +53,7 @@ def loop_layouts(system: MechanicalSystem, kind: Kind) -> LoopLayouts:
         changed=kept_layout(system, kind, memory).size,
         table_shape=kind.table_shape,
         law=kind.law,
+        spline=kind.spline,
     )
 
 
@@ -125,6 +128,7 @@ def settings_layout(system: MechanicalSystem, kind: Kind) -> Layout:
             ("level_weights", 3),
             ("level_constant", 1),
             ("plan", PLAN),  # of `Law.plan`; 0: none
+            *((("pieces", 1),) if kind.spline else ()),
             *((name, 1) for name in realism),
             ("hand_active", 1),
             ("hand_target", p),

@@ -120,7 +120,7 @@ def _unplaced(robot: Robot, point: ca.SX) -> ca.SX:
 def lift_of(robot: Robot, kind: Kind) -> Lift:
     """The map from the curve's coordinates to the output space; with `rate`, of vectors."""
     frame = robot.frame.space if kind.space and robot.frame.space else robot.frame
-    plane, size = frame.at(ca.SX(ca.DM(list(frame.numbers)))), kind.table_shape[0] // 4
+    plane, size = frame.at(ca.SX(ca.DM(list(frame.numbers)))), kind.dimension
     zeta = ca.SX.zeros(robot.system.p - size, 1)
     return lambda z, rate: plane.join(z, zeta, rate)
 

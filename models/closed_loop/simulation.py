@@ -24,6 +24,7 @@ from onpath.models.paths.curve_faults import ambiguities
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.distance import closest_parameter
 from onpath.models.paths.space_curves import saddle
+from onpath.models.paths.spline_curves import SplineCurve
 from onpath.models.systems.law_parameters import LEVEL_SET
 from onpath.models.systems.parameters import TICK, Parameters, look_ahead_time, rise_of, time_step
 from onpath.models.systems.robots import Robot
@@ -112,6 +113,7 @@ def kind_of(law: str, parameters: Parameters, curve: Curve, push: Push | None = 
         observer=(encoder or noise) and parameters.observer_time > 0,
         output=getattr(parameters, "output", "redefined"),
         space=curve.dimension == 3,
+        spline=isinstance(curve, SplineCurve),
         free=plain and exact and every_tick and untouched,
         across_first=_gives_way(law, parameters),
         delay=parameters.delay > 0,
@@ -192,6 +194,7 @@ def settings_vector(
             "delay_ticks": parameters.delay * interval,
             "sensor_noise": parameters.sensor_noise,
             "seed": round(parameters.seed),
+            **({"pieces": curve.pieces} if isinstance(curve, SplineCurve) else {}),
             **_push_fields(push, p),
             **_composite_gains(layouts, parameters),
             "plant": robot.plant(parameters),

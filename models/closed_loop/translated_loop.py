@@ -15,7 +15,8 @@ from __future__ import annotations
 import re
 import struct
 from collections.abc import Sequence
-from functools import cache, partial
+from functools import cache
+from math import prod
 from typing import TYPE_CHECKING
 
 import casadi as ca
@@ -36,6 +37,8 @@ from onpath.models.closed_loop.operations import (
     widened,
 )
 from onpath.models.errors import CodedError
+from onpath.models.paths.curves import ORDERS
+from onpath.models.paths.spline_curves import WINDOW
 
 if TYPE_CHECKING:
     from llvmlite.binding import TargetMachine
@@ -52,6 +55,7 @@ define internal void @one_robot(ptr noalias %settings, ptr noalias %curve, ptr n
 before:
   %basis = alloca [{basis} x double], align 64
   %values = alloca [{values} x double], align 64
+  %pieces = alloca [{columns} x double], align 64
   %any = icmp sgt i64 %ticks, 0
   br i1 %any, label %tick, label %after
 tick:
@@ -105,18 +109,22 @@ def translate(kernel: Kernel, lanes: int = 1) -> str:
     given = "%state", "%settings"
     rows, terms = kernel.table_shape
     columns = kernel.advance.size_in(2)[1]
-    product = _product if lanes == 1 else partial(_products, lanes=lanes)
-    tick = instructions(kernel.basis, given, ("%basis",), "b", kernel.law, lanes)
-    tick += [line for k in range(columns) for line in product(rows, terms, k)]
+    if kernel.spline:
+        terms, product, found = WINDOW * ORDERS, _windowed, ("%basis", "%pieces")
+    else:
+        product, found = (_product if lanes == 1 else _products), ("%basis",)
+    tick = instructions(kernel.basis, given, found, "b", kernel.law, lanes)
+    tick += [line for k in range(columns) for line in product(rows, terms, k, lanes)]
     inputs, outputs = (*given, "%values"), ("%state", "%row")
     tick += instructions(kernel.tick(), inputs, outputs, "v", kernel.law, lanes)
     text = "\n  ".join(tick)
     return _LOOP.format(
         library="\n".join([*map(_declared, _functions(text)), *_vector_declarations(text)]),
         basis=lanes * terms * columns,
-        values=lanes * rows * columns,
+        values=lanes * kernel.advance.size1_in(2) * columns,
+        columns=lanes * columns,
         settings=lanes * kernel.settings.size,
-        curve=lanes * rows * terms,
+        curve=lanes * prod(kernel.table_shape),
         state=lanes * kernel.state.size,
         log=lanes * kernel.log.size,
         tick=text,
@@ -177,7 +185,7 @@ def instructions(
     return [*reads, *works, *writes]
 
 
-def _product(rows: int, terms: int, column: int) -> list[str]:
+def _product(rows: int, terms: int, column: int, _: int) -> list[str]:
     """LLVM instructions for a column of %values: the table %curve times the same column of %basis.
 
     The interpreter, too, begins with 0 and adds the terms in their order.
@@ -229,6 +237,59 @@ def _products(rows: int, terms: int, column: int, lanes: int) -> list[str]:
             _place(v, "%values", lanes * (rows * column + row)),
             f"store {number} {total}, ptr {v}.at, align 8",
         ]
+    return lines
+
+
+def _windowed(rows: int, terms: int, column: int, lanes: int) -> list[str]:
+    """LLVM instructions for a column of %values of a spline: the points of a piece times %basis.
+
+    The number of the piece, in %pieces, becomes an address in the table; each lane has its own.
+    """
+    lines, number = list[str](), _number(lanes)
+    for lane in range(lanes):
+        piece = f"%piece{column}.{lane}"
+        lines += [
+            _place(piece, "%pieces", lanes * column + lane),
+            f"{piece} = load double, ptr {piece}.at",
+            f"{piece}.whole = fptosi double {piece} to i64",
+            f"{piece}.begin = mul i64 {piece}.whole, {lanes * rows}",
+            f"{piece}.points = getelementptr double, ptr %curve, i64 {piece}.begin",
+        ]
+    for index in range(rows * WINDOW):
+        whole = "poison"
+        for lane in range(lanes):
+            last = f"%point{column}.{index}"
+            own, after = f"{last}.{lane}", last if lane == lanes - 1 else f"{last}.{lane}.whole"
+            each = own if lanes > 1 else last
+            points = f"%piece{column}.{lane}.points"
+            lines += [
+                _place(own, points, lanes * index + lane),
+                f"{each} = load double, ptr {own}.at, align 8",
+            ]
+            if lanes > 1:
+                lines.append(f"{after} = insertelement {number} {whole}, double {own}, i64 {lane}")
+            whole = after
+    for k in range(terms):
+        factor = f"%factor{column}.{k}"
+        lines += [
+            _place(factor, "%basis", lanes * (terms * column + k)),
+            f"{factor} = load {number}, ptr {factor}.at, align 8",
+        ]
+    for order in range(ORDERS):
+        for row in range(rows):
+            v, total = f"%sum{column}.{order}.{row}", "0.0" if lanes == 1 else "zeroinitializer"
+            for k in range(WINDOW):
+                point = f"%point{column}.{rows * k + row}"
+                factor = f"%factor{column}.{WINDOW * order + k}"
+                lines += [
+                    f"{v}.term{k} = fmul {number} {point}, {factor}",
+                    f"{v}.{k} = fadd {number} {total}, {v}.term{k}",
+                ]
+                total = f"{v}.{k}"
+            lines += [
+                _place(v, "%values", lanes * (rows * (ORDERS * column + order) + row)),
+                f"store {number} {total}, ptr {v}.at, align 8",
+            ]
     return lines
 
 

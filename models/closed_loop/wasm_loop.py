@@ -16,6 +16,8 @@ import casadi as ca
 from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.operations import MATHEMATICS, OPERATIONS, no_translation
 from onpath.models.closed_loop.wasm_module import Part, WasmFunction, wasm_module
+from onpath.models.paths.projection import windowed
+from onpath.models.paths.spline_curves import WINDOW
 
 DOUBLE = 8  # bytes
 _CODES = {code: each.wasm.split() for code, each in OPERATIONS.items() if each.wasm}
@@ -29,10 +31,15 @@ class Scan:
     Attributes:
         step: (state, constants, rows) -> (state, result row).
         stride: distance between the beginnings of the rows of consecutive steps, in numbers.
+        where: (state, constants) -> indices of the rows at which `step` begins to read, one for
+            each of its inputs from the third on; None: it has one, and reads from the first row on.
+        row: numbers in a row of which `where` gives the index.
     """
 
     step: ca.Function
     stride: int
+    where: ca.Function | None = None
+    row: int = 0
 
 
 def wasm_of(
@@ -51,7 +58,7 @@ def wasm_of(
     Raises:
         CodedError: an operation has no translation; the message names it and its law or function.
     """
-    repeated = {name: Scan(_tick(kernel), 0) for name, kernel in loops.items()} | dict(scans)
+    repeated = {name: _loop(kernel) for name, kernel in loops.items()} | dict(scans)
     laws = {name: kernel.law for name, kernel in loops.items()}  # their faults are reported first
     steps = {
         name: _translated(f"{name}.step", scan.step, laws.get(name, name))
@@ -59,17 +66,31 @@ def wasm_of(
     }
     translated = [_translated(name, function, name) for name, function in functions.items()]
     for name, scan in repeated.items():
-        translated += [steps[name], _repeated(name, len(MATHEMATICS) + len(translated), scan)]
+        number = len(MATHEMATICS) + len(translated)
+        translated.append(steps[name])
+        if scan.where is not None:
+            translated.append(_translated(f"{name}.where", scan.where, laws.get(name, name)))
+        translated.append(_repeated(name, number, scan))
     return wasm_module(translated)
 
 
-def _tick(kernel: Kernel) -> ca.Function:
-    """(state, settings, curve table) -> (state, log row), with the curve's product in it."""
-    names = "state", "settings", "curve"
-    shapes = kernel.advance.size_in(0), kernel.advance.size_in(1), kernel.table_shape
-    state, settings, table = (ca.SX.sym(n, *s) for n, s in zip(names, shapes, strict=True))
-    after, row, _ = kernel.advance(state, settings, table @ kernel.basis(state, settings))
-    return ca.Function("tick", [state, settings, table], [after, row])
+def _loop(kernel: Kernel) -> Scan:
+    """The ticks of a kernel, with the curve's product in them. A spline is read from a piece on."""
+    state, settings = (ca.SX.sym("given", *kernel.advance.size_in(i)) for i in (0, 1))
+    basis, *pieces = kernel.basis.call([state, settings])
+    if not kernel.spline:
+        tables = [ca.SX.sym("curve", *kernel.table_shape)]
+        values = tables[0] @ basis
+    else:
+        size = kernel.table_shape[0], WINDOW
+        tables = [ca.SX.sym("window", *size) for _ in range(pieces[0].numel())]
+        values = windowed(tables, basis)
+    after, row, *_ = kernel.advance.call([state, settings, values])
+    step = ca.Function("tick", [state, settings, *tables], [after, row])
+    if not kernel.spline:
+        return Scan(step, 0)
+    where = ca.Function("where", [state, settings], pieces)
+    return Scan(step, 0, where=where, row=kernel.table_shape[0])
 
 
 def _translated(name: str, function: ca.Function, owner: str) -> WasmFunction:
@@ -140,7 +161,13 @@ def _uses(function: ca.Function) -> Counter[int]:
 def _repeated(name: str, step: int, scan: Scan) -> WasmFunction:
     """The loop that calls the function `step` repeatedly, see `wasm_of`."""
     state, constants, rows, results, left = (("local.get", i) for i in range(5))
-    each = [state, constants, rows, state, results, ("call", step)]
+    each: list[Part] = [state, constants, rows, state, results, ("call", step)]
+    if scan.where is not None:  # the row of results, not yet written, holds the indices
+        each = [state, constants, results, ("call", step + 1), state, constants]
+        for k in range(scan.where.numel_out(0)):
+            index: list[Part] = [results, ("f64.load", DOUBLE * k), "i32.trunc_f64_s"]
+            each += [rows, *index, ("i32.const", DOUBLE * scan.row), "i32.mul", "i32.add"]
+        each += [state, results, ("call", step)]
     on = list[Part]()
     for place, numbers in ((2, scan.stride), (3, scan.step.numel_out(1))):
         if numbers:

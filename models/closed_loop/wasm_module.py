@@ -27,6 +27,7 @@ _PLAIN = {
     "f64.le": 0x65,
     "i32.add": 0x6A,
     "i32.sub": 0x6B,
+    "i32.mul": 0x6C,
     "i32.and": 0x71,
     "i32.or": 0x72,
     "f64.abs": 0x99,
@@ -39,6 +40,7 @@ _PLAIN = {
     "f64.mul": 0xA2,
     "f64.div": 0xA3,
     "f64.copysign": 0xA6,
+    "i32.trunc_f64_s": 0xAA,
     "f64.convert_i32_u": 0xB8,
 }
 _NUMBERED = {"br_if": 0x0D, "call": 0x10, "local.get": 0x20, "local.set": 0x21}

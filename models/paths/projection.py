@@ -11,7 +11,9 @@ Source: eq. (7).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any, overload
 
 import casadi as ca
 import numpy as np
@@ -20,7 +22,7 @@ from onpath.models.paths.curves import HARMONICS, ORDERS, PERIOD
 from onpath.models.paths.spline_curves import MOST_PIECES, WINDOW, piece_basis
 
 NEWTON_STEPS = 2
-LARGEST_STEP = 0.5  # [rad], of one Newton step
+LARGEST_STEP = 0.5  # [rad], of one Newton step on a series
 LEAST_SLOPE = 0.05  # least Newton derivative in units of |σ'|²; it is 0 at the centre of curvature
 
 
@@ -65,6 +67,21 @@ def spline_basis(theta: ca.SX, closed: bool, pieces: ca.SX) -> tuple[ca.SX, ca.S
     return ca.horzcat(*(ca.vertcat(*row) for row in piece_basis(place - piece, per_radian))), piece
 
 
+@overload
+def windowed(windows: Sequence[ca.SX], basis: ca.SX) -> ca.SX: ...
+@overload
+def windowed(windows: Sequence[ca.MX], basis: ca.MX) -> ca.MX: ...
+def windowed(windows: Sequence[Any], basis: Any) -> Any:
+    """σ, σ', σ'' and σ''' below one another, a column for each window: (d ORDERS, windows).
+
+    Args:
+        windows: control points, (d, WINDOW) each.
+        basis: of all windows, side by side, (WINDOW, ORDERS) each.
+    """
+    parts = ca.horzsplit(basis, ORDERS)
+    return ca.horzcat(*(ca.vec(w @ each) for w, each in zip(windows, parts, strict=True)))
+
+
 def window(table: ca.MX, piece: ca.MX) -> ca.MX:
     """The control points of a piece, (d, WINDOW), from a (d, TABLE_POINTS) table."""
     d = table.size1()
@@ -80,6 +97,7 @@ class LocalCurve:
     Attributes:
         theta: θ_0, [rad].
         sigma, first, second, third: σ, σ', σ'' and σ''' at θ_0, [m], [m/rad], [m/rad²], [m/rad³].
+        reach: largest step of `project`, [rad].
     """
 
     theta: ca.SX
@@ -87,6 +105,7 @@ class LocalCurve:
     first: ca.SX
     second: ca.SX
     third: ca.SX
+    reach: ca.SX | float = LARGEST_STEP
 
     @staticmethod
     def from_values(theta: ca.SX, closed: bool, values: ca.SX) -> LocalCurve:
@@ -118,16 +137,15 @@ class LocalCurve:
         second = self.second + bend
         first = self.first + half * (self.second + second)
         sigma = self.sigma + step * (self.first + half * (self.second + bend / 3))
-        return LocalCurve(
-            theta=self.theta + step, sigma=sigma, first=first, second=second, third=self.third
-        )
+        theta = self.theta + step
+        return replace(self, theta=theta, sigma=sigma, first=first, second=second)
 
     def project(self, z: ca.SX) -> LocalCurve:
         """The polynomial expanded about the point closest to z.
 
         Newton's method for (z - σ) · σ' = 0:
 
-            δ = (z - σ) · σ' / max(|σ'|² - (z - σ) · σ'', LEAST_SLOPE |σ'|²),   |δ| <= LARGEST_STEP.
+            δ = (z - σ) · σ' / max(|σ'|² - (z - σ) · σ'', LEAST_SLOPE |σ'|²),   |δ| <= reach.
 
         Args:
             z: a point in the coordinates of the curve, (d, 1), [m].
@@ -138,7 +156,7 @@ class LocalCurve:
             tangent2 = ca.dot(local.first, local.first)
             slope = ca.fmax(tangent2 - ca.dot(gap, local.second), LEAST_SLOPE * tangent2)
             step = ca.dot(gap, local.first) / slope
-            local = local.moved(ca.fmin(ca.fmax(step, -LARGEST_STEP), LARGEST_STEP))
+            local = local.moved(ca.fmin(ca.fmax(step, -self.reach), self.reach))
         return local
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from onpath.models.arrays import Array
 from onpath.models.paths.curves import PERIOD, Curve, SeriesCurve, chebyshev_curve, fourier
 from onpath.models.paths.spline_curves import DEGREE, SplineCurve
 
@@ -60,8 +59,8 @@ def _risen(curve: SplineCurve, rise: float) -> SplineCurve:
     centre = -np.pi + h * (np.arange(len(curve.points)) - (DEGREE - 1) / 2)
     if curve.closed:
         damping = (66 + 52 * np.cos(2 * h) + 2 * np.cos(4 * h)) / 120
-        height: Array = rise / damping * np.cos(2 * centre)
+        height = rise / damping * np.cos(2 * centre)
         height[-DEGREE:] = height[:DEGREE]
     else:
         height = rise * (2 * (centre**2 - h**2 / 2) / np.pi**2 - 1)
-    return SplineCurve(curve.closed, height[:, None])
+    return SplineCurve(curve.closed, height[:, None].astype(np.float64))

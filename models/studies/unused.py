@@ -15,6 +15,8 @@ from onpath.models.closed_loop.profile_shapes import profile_of
 from onpath.models.closed_loop.simulation import FREE, kernel_of, kind_of, settings_vector
 from onpath.models.control.laws.own import law_title
 from onpath.models.control.settable import changed, specs, value_of
+from onpath.models.paths.projection import windowed
+from onpath.models.paths.spline_curves import WINDOW
 from onpath.models.studies.experiments import Experiment
 from onpath.models.systems.parameter_specs import Spec
 from onpath.models.systems.parameters import Parameters, time_step
@@ -137,8 +139,14 @@ def _reaches_motion(
 
 
 def _tick(kernel: Kernel, before: ca.SX, settings: ca.SX, table: ca.DM) -> ca.SX:
-    """The state after a tick."""
-    return kernel.advance(before, settings, table @ kernel.basis(before, settings))[0]
+    """The state after a tick, on a spline as if all of its pieces were the first one."""
+    basis, *pieces = kernel.basis.call([before, settings])
+    if pieces:
+        first = ca.SX(table[:, :WINDOW])
+        values = windowed([first] * pieces[0].numel(), basis)
+    else:
+        values = table @ basis
+    return kernel.advance.call([before, settings, values])[0]
 
 
 def _alive(values: ca.SX) -> ca.DM:

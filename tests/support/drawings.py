@@ -1,0 +1,45 @@
+"""Random drawings: splines of many bends whose parameter is the time of a profile."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.interpolate import BSpline, CubicSpline
+
+from onpath.models.arrays import Array
+from onpath.models.paths.spline_curves import DEGREE, SplineCurve
+
+
+def random_drawing(
+    seed: int, pieces: int = 120, size: float = 0.05, closed: bool = False
+) -> SplineCurve:
+    """A scrawl through random points within ±size [m], slower in bends: κv <= 20 / s at 0.1 m/s."""
+    corners = size * np.random.default_rng(seed).uniform(-1, 1, (max(4, pieces // 12), 2))
+    if closed:
+        corners = np.vstack([corners, corners[:1]])
+    line = CubicSpline(
+        np.arange(len(corners)), corners, bc_type="periodic" if closed else "natural"
+    )
+    u = np.linspace(0, len(corners) - 1, 30 * pieces + 1)
+    first, second = line(u, 1), line(u, 2)
+    speed = np.linalg.norm(first, axis=1)
+    bend = np.abs(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]) / speed**2
+    slowness = np.maximum(speed / 0.1, bend / 20)
+    weights = np.hanning(31) / np.hanning(31).sum()
+    slowness = np.convolve(
+        np.pad(slowness, 15, mode="wrap" if closed else "edge"), weights, "valid"
+    )
+    time = np.concatenate([[0.0], np.cumsum((slowness[1:] + slowness[:-1]) / 2)])
+    return through(time / time[-1], line(u), pieces, closed)
+
+
+def through(time: Array, z: Array, pieces: int, closed: bool) -> SplineCurve:
+    """The spline of least squares through points at times from 0 to 1."""
+    place = np.clip(time * pieces, 0, pieces * (1 - 1e-12))
+    knots = np.arange(-DEGREE, pieces + DEGREE + 1, dtype=float)
+    design = BSpline.design_matrix(place, knots, DEGREE)
+    squares, products = (design.T @ design).toarray(), np.asarray(design.T @ z)
+    if closed:
+        same = np.eye(pieces)[np.arange(pieces + DEGREE) % pieces]
+        squares, products = same.T @ squares @ same, same.T @ products
+    points: Array = np.linalg.solve(squares, products).astype(np.float64)
+    return SplineCurve(closed, np.vstack([points, points[:DEGREE]]) if closed else points)
