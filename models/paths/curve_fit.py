@@ -198,25 +198,42 @@ def distinct(points: Array, least: int) -> Array:
         ValueError: a wrong shape, points that are not finite, fewer than `least` distinct points,
             or a total length below `SHORTEST`.
     """
+    kept = apart(points)
+    if len(kept) < least:
+        raise CodedError("error.points_coincide", least=least)
+    check_length(float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum()))
+    if np.linalg.norm(kept[0] - kept[-1]) < APART:
+        kept = kept[:-1]
+    if len(kept) < least:
+        raise CodedError("error.points_coincide", least=least)
+    return kept
+
+
+def apart(points: Array) -> Array:
+    """The points that are `APART` from the one kept before them, shape (n, 2) -> (k, 2).
+
+    Raises:
+        ValueError: a wrong shape, or points that are not finite.
+    """
     points = np.asarray(points, dtype=float)
     if points.ndim != 2 or points.shape[1] != 2 or not np.all(np.isfinite(points)):
         raise ValueError("a path needs finite points, shape (n, 2)")
-    gaps = np.linalg.norm(np.diff(points, axis=0), axis=1)
     kept = list[list[float]]()
     for point in points.tolist():
         if not kept or dist(point, kept[-1]) > APART:
             kept.append(point)
-    points = np.array(kept).reshape(-1, 2)
-    if len(points) < least:
-        raise CodedError("error.points_coincide", least=least)
-    if gaps.sum() < SHORTEST:
-        length, shortest = (f"{1e3 * each:.0f}" for each in (gaps.sum(), SHORTEST))
-        raise CodedError("error.path_too_short", length=length, least=shortest)
-    if np.linalg.norm(points[0] - points[-1]) < APART:
-        points = points[:-1]
-    if len(points) < least:
-        raise CodedError("error.points_coincide", least=least)
-    return points
+    return np.array(kept).reshape(-1, 2)
+
+
+def check_length(length: float) -> None:
+    """Refuse a path that is shorter than `SHORTEST`, [m].
+
+    Raises:
+        CodedError: it is.
+    """
+    if length < SHORTEST:
+        given, shortest = (f"{1e3 * each:.0f}" for each in (length, SHORTEST))
+        raise CodedError("error.path_too_short", length=given, least=shortest)
 
 
 def _arc_length(points: Array) -> Array:

@@ -13,11 +13,12 @@ Source: C. de Boor, A Practical Guide to Splines, Springer, 2001, chapter X.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from typing_extensions import override
 
 from onpath.models.arrays import Array
@@ -39,6 +40,7 @@ class SplineCurve(Curve):
         points: control points, shape (pieces + DEGREE, d), [m]. The last `DEGREE` points of a
             closed curve are its first ones.
         raised: the links between strokes, where the pen is up: (θ from, θ to), [rad].
+        duration: time of a pass at the usual speed, at which one of a series takes 1 s, [s].
 
     Raises:
         ValueError: there are no pieces or more than `MOST_PIECES`, the points are not finite, or a
@@ -47,6 +49,7 @@ class SplineCurve(Curve):
 
     points: Array
     raised: tuple[tuple[float, float], ...] = ()
+    duration: float = 1.0
 
     def __post_init__(self) -> None:
         if self.points.ndim != 2 or not np.isfinite(self.points).all():
@@ -94,6 +97,13 @@ class SplineCurve(Curve):
             values[2:] = [np.where(beyond == 0, value, 0.0) for value in values[2:]]
         return values
 
+    def draws(self, theta: Array) -> NDArray[np.bool_]:
+        """Whether the pen is down at θ, of the same shape."""
+        down = np.ones(np.shape(theta), dtype=bool)
+        for begin, end in self.raised:
+            down &= (theta <= begin) | (theta >= end)
+        return down
+
     @override
     def table(self) -> Array:
         """The control points, with zeros up to the most pieces: a (d, TABLE_POINTS) matrix, flat,
@@ -110,7 +120,7 @@ class SplineCurve(Curve):
     @property
     @override
     def plan(self) -> SplineCurve:
-        return SplineCurve(self.closed, self.points[:, :2], self.raised)
+        return replace(self, points=self.points[:, :2], given=None, deviation=0.0)
 
     @override
     def length(self) -> float:

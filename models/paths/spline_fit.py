@@ -1,0 +1,399 @@
+"""Fits a curve of many pieces to the strokes of a drawing.
+
+The strokes are rounded a little, joined by raised links, and given a speed that slows for bends.
+The parameter of the curve is the time of this speed profile, from -π to π: while θ' is constant,
+every law passes bends slowly. With D the design matrix of the B-splines and z the points at even
+times, the control points p minimise
+
+    |D p - z|² + w |Δ³ p|².
+
+Source: C. de Boor, A Practical Guide to Splines, Springer, 2001, chapters X and XIV; for the second
+term Eilers and Marx, Flexible smoothing with B-splines and penalties, Statistical Science 11, 1996.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from onpath.models.arrays import Array
+from onpath.models.errors import CodedError
+from onpath.models.paths.curve_fit import APART, DENSE, apart, check_length
+from onpath.models.paths.curves import PERIOD
+from onpath.models.paths.spline_curves import DEGREE, MOST_PIECES, SplineCurve
+
+LEAST_RADIUS = 5e-4  # [m], of the bends of a path
+ROUNDINGS = ((2e-4, 1.0), (4e-4, 1.2), (6e-4, 1.5), (8e-4, 2.0))
+"""Width of the smoothing, [m], and factor of the caps' radius; the later ones if bends need it."""
+STEP = 1e-4  # [m], arc length between two points of a line, unless it is long
+MOST_STEPS = 40_000  # of a line
+CUSP = float(np.cos(np.deg2rad(110)))  # cosine of the turn from which a corner is a cusp
+CAP = (6e-4, 1.2e-3)  # [m], least and largest radius of the half circle in the place of a cusp
+TAPER = 8  # length on which a line makes room for this half circle, in radii
+QUICK = 0.314  # [m/s], speed on straight lines: that of the usual circle
+HASTE = 1.5  # factor of `QUICK` where the pen is up
+TURNING = 2.0  # [m/s²], acceleration in bends and along the path: that of the usual circle
+SWING = (
+    40.0  # [rad/s], of the tangent: 2 √K1 of the usual gains, up to which a held arm keeps a bend
+)
+SLOW = 0.05  # least speed as a share of `QUICK`, so that σ' is nowhere 0
+AT_ENDS = 0.3  # the same at the ends of an open path
+EASING = 2e-3  # [m], width of the smoothing of the speed
+CLOSE = 0.0025  # deviation at which pieces suffice, as a share of the drawing's size
+FIRST_PIECES = 24
+DENSITY = 12  # points on each piece
+STIFFNESS = 1e-7  # w, for each point of a piece
+LINK_RADIUS = 2e-3  # [m], least one of a link's arcs
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Line:
+    """Strokes and links as one line.
+
+    Attributes:
+        points: close to each other, shape (n, 2), [m]; a closed line ends with its first point.
+        pen: whether the pen is down at them, shape (n,).
+        closed: whether the line is closed.
+    """
+
+    points: Array
+    pen: Array
+    closed: bool
+
+
+def spline_through(strokes: Sequence[Array], closed: bool = False) -> SplineCurve:
+    """The path along strokes in their order; between them the pen is raised.
+
+    It is rounded as little as is needed for bends of `LEAST_RADIUS`.
+
+    Args:
+        strokes: each of shape (n, 2), [m].
+        closed: whether a single stroke is joined to its beginning.
+
+    Raises:
+        ValueError: points of a wrong shape or not finite, fewer than two of a stroke that are
+            apart from each other (three of a closed one), or a length below `SHORTEST`.
+    """
+    closed = closed and len(strokes) == 1
+    lines = _cleaned(strokes, closed)
+    size = float(np.ptp(np.vstack(lines), axis=0).max())
+    sharpest, best = np.inf, None
+    for width, factor in ROUNDINGS:
+        cap = factor * float(np.clip(0.008 * size, *CAP))
+        line = _joined([_rounded(each, closed, width, cap) for each in lines], closed, size)
+        found = _fitted(line, CLOSE * size)
+        bend = _sharpest(found)
+        if bend < sharpest:
+            sharpest, best = bend, found
+        if bend <= 1 / LEAST_RADIUS:
+            break
+    assert best is not None
+    return _compared(best, lines)
+
+
+def _cleaned(strokes: Sequence[Array], closed: bool) -> list[Array]:
+    """The strokes without points that coincide, and those that are more than a point.
+
+    A closed one ends with its first point.
+
+    Raises:
+        ValueError: see `spline_through`.
+    """
+    kept = [apart(stroke) for stroke in strokes]
+    if closed and kept and len(kept[0]) > 2 and np.linalg.norm(kept[0][0] - kept[0][-1]) > APART:
+        kept[0] = np.vstack([kept[0], kept[0][:1]])
+    lines = [line for line in kept if len(line) > (3 if closed else 1)]
+    if not lines:
+        raise CodedError("error.points_coincide", least=3 if closed else 2)
+    check_length(sum(float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum()) for line in lines))
+    return lines
+
+
+def _rounded(points: Array, closed: bool, width: float, cap: float) -> Array:
+    """A stroke at even steps, smoothed by a Gaussian of some width, with caps of a radius, [m]."""
+    from scipy.ndimage import gaussian_filter1d  # slow to import; see app/server/warm_up.py
+
+    even, step = _even(points)
+    even = _capped(even, step, closed, cap)
+    even, step = _even(even)
+    if closed:
+        smooth = gaussian_filter1d(even[:-1], width / step, axis=0, mode="wrap")
+        return np.vstack([smooth, smooth[:1]])
+    pad = min(len(even) - 1, int(4 * width / step) + 1)
+    before = 2 * even[:1] - even[pad:0:-1]
+    after = 2 * even[-1:] - even[-2 : -pad - 2 : -1]
+    smooth = gaussian_filter1d(np.vstack([before, even, after]), width / step, axis=0)
+    return smooth[pad:-pad]
+
+
+def _even(points: Array) -> tuple[Array, float]:
+    """The points of a polyline at even steps, and the step [m]."""
+    s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    count = int(np.clip(s[-1] / STEP, 32, MOST_STEPS))
+    at = np.linspace(0.0, s[-1], count + 1)
+    return np.stack([np.interp(at, s, each) for each in points.T], axis=-1), float(s[-1] / count)
+
+
+def _capped(points: Array, step: float, closed: bool, radius: float) -> Array:
+    """A line at even steps with half circles of a radius in the place of its cusps.
+
+    Before a cusp the line gives way to one side, and after it to the other one.
+    """
+    ring = points[:-1] if closed else points
+    reach = max(2, round(1.5 * radius / step))
+    if len(ring) < 4 * reach:
+        return points
+    cosine, outward = _turns(ring, closed, reach)
+    if closed:  # begin where it is straight
+        seam = int(cosine.argmax())
+        ring, cosine, outward = (np.roll(each, -seam, axis=0) for each in (ring, cosine, outward))
+    parts, begin = list[Array](), 0
+    moved = ring.copy()
+    for i in _cusps(cosine, outward, reach):
+        along = outward[i] / max(float(np.linalg.norm(outward[i])), 1e-30)
+        side = np.array([-along[1], along[0]])
+        if (ring[max(i - reach, 0)] - ring[min(i + reach, len(ring) - 1)]) @ side < 0:
+            side = -side
+        taper = round(TAPER * radius / step)
+        for sign, index in (
+            (1, np.arange(max(i - taper, 0), i)[::-1]),
+            (-1, np.arange(i + 1, min(i + taper, len(ring)))),
+        ):
+            share = np.arange(1, len(index) + 1) / taper
+            room = radius * (1 - share**2 * (3 - 2 * share))
+            there = sign * ((ring[index] - ring[i]) @ side)
+            moved[index] += sign * np.maximum(room - there, 0.0)[:, None] * side
+        angle = np.linspace(0.0, np.pi, 2 * reach + 1)[:, None]
+        arc = ring[i] + radius * (np.cos(angle) * side + (np.sin(angle) - 1) * along)
+        cut = round(radius / step)
+        parts += [(begin, i - cut), arc]
+        begin = i + cut + 1
+    parts.append((begin, len(ring)))
+    result = np.vstack([moved[p[0] : p[1]] if isinstance(p, tuple) else p for p in parts])
+    if not closed:
+        return result
+    first = int(np.linalg.norm(result - points[0], axis=1).argmin())
+    result = np.roll(result, -first, axis=0)
+    return np.vstack([result, result[:1]])
+
+
+def _turns(ring: Array, closed: bool, reach: int) -> tuple[Array, Array]:
+    """Cosine of the turn at each point, between points some steps away, and where it points to."""
+    places, count = np.arange(len(ring)), len(ring)
+    back, ahead = (
+        ring[(places + k) % count if closed else np.clip(places + k, 0, count - 1)] - ring
+        for k in (-reach, reach)
+    )
+    lengths = np.linalg.norm(back, axis=1) * np.linalg.norm(ahead, axis=1)
+    cosine = -(back * ahead).sum(axis=1) / np.maximum(lengths, 1e-30)
+    if not closed:
+        cosine[:reach] = cosine[-reach:] = 1.0
+    return cosine, -(back + ahead)
+
+
+def _cusps(cosine: Array, outward: Array, reach: int) -> list[int]:
+    """Places of the cusps, which stand out most among their neighbours."""
+    heights = np.where(cosine < CUSP, np.linalg.norm(outward, axis=1), 0.0)
+    found = list[int]()
+    for i in np.flatnonzero(heights).tolist():
+        highest = heights[i] >= heights[max(i - reach, 0) : i + reach + 1].max()
+        if highest and (not found or i - found[-1] > 2 * reach):
+            found.append(i)
+    return found
+
+
+def _joined(strokes: list[Array], closed: bool, size: float) -> Line:
+    """Strokes with links between them."""
+    parts, pens = [strokes[0]], [np.ones(len(strokes[0]), dtype=bool)]
+    for before, after in pairwise(strokes):
+        link = _link(before, after, size)
+        parts += [link, after]
+        pens += [np.zeros(len(link), dtype=bool), np.ones(len(after), dtype=bool)]
+    return Line(np.vstack(parts), np.concatenate(pens), closed and len(strokes) == 1)
+
+
+def _link(before: Array, after: Array, size: float) -> Array:
+    """Points from the end of one line to the beginning of another one, without those two.
+
+    It is the shortest way that leaves and arrives along the lines, of two arcs of a circle and the
+    straight line between them.
+
+    Source: L. E. Dubins, American Journal of Mathematics 79 (1957).
+    """
+    radius = max(LINK_RADIUS, 0.04 * size)
+    a, b = complex(*before[-1]), complex(*after[0])
+    leaving, arriving = _direction(before[-4:]), _direction(after[:4])
+    ways = list[tuple[float, Array]]()
+    for first in (1, -1):
+        for last in (1, -1):
+            c, d = a + 1j * first * radius * leaving, b + 1j * last * radius * arriving
+            squared = abs(d - c) ** 2 - (radius * (last - first)) ** 2
+            if squared < 0 or d == c:
+                continue
+            straight = squared**0.5
+            along = (d - c) / (straight + 1j * radius * (last - first))
+            along /= abs(along)
+            begin = float(first * np.angle(along / leaving)) % PERIOD
+            end = float(last * np.angle(arriving / along)) % PERIOD
+            turn = np.arange(0.0, begin, STEP / radius)
+            back = np.arange(0.0, end, STEP / radius)
+            parts = (
+                c - 1j * first * radius * leaving * np.exp(1j * first * turn),
+                c - 1j * first * radius * along + along * np.arange(0.0, straight, STEP),
+                d - 1j * last * radius * along * np.exp(1j * last * back),
+            )
+            ways.append((straight + radius * (begin + end), np.concatenate(parts)[1:]))
+    points = min(ways, key=lambda way: way[0])[1]
+    return np.stack([points.real, points.imag], axis=-1)
+
+
+def _direction(points: Array) -> complex:
+    along = complex(*(points[-1] - points[0]))
+    return along / abs(along)
+
+
+def _times(line: Line, bends: Array) -> Array:
+    """Time at which each point of a line is passed, shape (n,), [s].
+
+    The speed is at most `QUICK`, the acceleration in bends and along the line `TURNING`, and the
+    tangent turns by at most `SWING`; with the pen up they are `HASTE` times as large, the
+    acceleration its square.
+
+    Args:
+        bends: curvature at the points, not negative, shape (n,), [1/m].
+    """
+    haste = np.where(line.pen, 1.0, HASTE)
+    steps = np.maximum(np.linalg.norm(np.diff(line.points, axis=0), axis=1), 1e-9)
+    bends = np.maximum(bends, 1e-9)
+    speed = np.minimum(np.sqrt(TURNING / bends), SWING / bends)
+    speed = haste * np.clip(speed, SLOW * QUICK, QUICK)
+    if not line.closed:
+        speed[[0, -1]] = np.minimum(speed[[0, -1]], AT_ENDS * QUICK)
+    squared, gain = speed**2, 2 * TURNING * haste[1:] ** 2 * steps
+    for _ in range(2 if line.closed else 1):  # the second pass knows what comes over the seam
+        if line.closed:
+            squared[[0, -1]] = squared[[0, -1]].min()
+        squared = _reachable(_reachable(squared, gain)[::-1], gain[::-1])[::-1]
+    slowness = _eased(1 / np.sqrt(squared), steps, line.closed)
+    return np.concatenate([[0.0], np.cumsum(steps * (slowness[1:] + slowness[:-1]) / 2)])
+
+
+def _bends(line: Line) -> Array:
+    """Mean curvature around each point, over `EASING` to both sides, [1/m].
+
+    Over less, a circle of straight lines would have sharp bends.
+    """
+    steps = np.linalg.norm(np.diff(line.points, axis=0), axis=1)
+    along = np.diff(line.points, axis=0)
+    angle = np.unwrap(np.arctan2(along[:, 1], along[:, 0]))
+    s = np.concatenate([[0.0], np.cumsum(steps)])
+    middle = (s[1:] + s[:-1]) / 2
+    if line.closed:
+        turn = angle[-1] - angle[0]
+        turn += float(np.angle(np.exp(1j * (angle[0] - angle[-1]))))
+        middle = np.concatenate([middle - s[-1], middle, middle + s[-1]])
+        angle = np.concatenate([angle - turn, angle, angle + turn])
+    ahead, back = (np.interp(s + d, middle, angle) for d in (EASING, -EASING))
+    return np.abs(ahead - back) / (2 * EASING)
+
+
+def _reachable(squared: Array, gain: Array) -> Array:
+    """v² that bounded acceleration reaches from the left, if each step may add `gain` to it."""
+    reserve = np.concatenate([[0.0], np.cumsum(gain)])
+    return np.minimum.accumulate(squared - reserve) + reserve
+
+
+def _eased(slowness: Array, steps: Array, closed: bool) -> Array:
+    """1/v, smoothed along the line: bends are passed no quicker than before."""
+    from scipy.ndimage import gaussian_filter1d, maximum_filter1d
+
+    width = EASING / float(np.median(steps))
+    mode = "wrap" if closed else "nearest"
+    high = maximum_filter1d(slowness, 2 * int(width) + 1, mode=mode)
+    return np.asarray(gaussian_filter1d(high, width, mode=mode), dtype=float)
+
+
+def _fitted(line: Line, close: float) -> SplineCurve:
+    """A line as a path of as many pieces as are needed to be `close` to it, [m].
+
+    The bends of a first fit decide on the speed of the second one.
+    """
+    time = _times(line, _bends(line))
+    first = _in_pieces(line, time, close)
+    theta = -np.pi + PERIOD * time / time[-1]
+    return _in_pieces(line, _times(line, np.abs(first.curvature(theta))), close)
+
+
+def _in_pieces(line: Line, time: Array, close: float) -> SplineCurve:
+    """The path of a line that is passed at given times."""
+    pieces = FIRST_PIECES
+    while True:
+        at = np.linspace(0.0, time[-1], DENSITY * pieces + 1)
+        z = np.stack([np.interp(at, time, each) for each in line.points.T], axis=-1)
+        points, there = _least_squares(z, pieces, line.closed)
+        raised, duration = _raised(line.pen, time), float(time[-1])
+        curve = SplineCurve(line.closed, points, raised=raised, duration=duration)
+        down = np.interp(at, time, line.pen.astype(float)) > 0.5
+        near = float(np.abs(there - z)[down].max()) < close
+        if pieces == MOST_PIECES or (near and _sharpest(curve) < 1 / LEAST_RADIUS):
+            return curve
+        pieces = min(3 * pieces // 2, MOST_PIECES)
+
+
+def _sharpest(curve: SplineCurve) -> float:
+    """The largest curvature, [1/m]."""
+    return float(np.abs(curve.curvature(curve.sample(2 * curve.grid))).max())
+
+
+def _least_squares(z: Array, pieces: int, closed: bool) -> tuple[Array, Array]:
+    """Control points of the spline nearest to points at even times, and its points there."""
+    from scipy.interpolate import BSpline
+    from scipy.sparse import csc_array, diags_array
+    from scipy.sparse.linalg import spsolve
+
+    x = np.linspace(0.0, pieces, len(z))
+    knots = np.arange(-DEGREE, pieces + DEGREE + 1, dtype=float)
+    design: Any = csc_array(BSpline.design_matrix(x, knots, DEGREE))
+    count = pieces + DEGREE
+    third: Any = csc_array(
+        diags_array([-1.0, 3.0, -3.0, 1.0], offsets=[0, 1, 2, 3], shape=(count - 3, count))
+    )
+    if closed:
+        wrap: Any = csc_array(
+            (np.ones(count), (np.arange(count), np.arange(count) % pieces)), shape=(count, pieces)
+        )
+        design, third = design @ wrap, third @ wrap
+    weights = np.ones(len(z))
+    weights[[0, -1]] = 1.0 if closed else 100.0  # an open path begins and ends where it should
+    weighted = diags_array(weights) @ design
+    normal = design.T @ weighted + STIFFNESS * DENSITY * (third.T @ third)
+    points = np.asarray(spsolve(csc_array(normal), weighted.T @ z), dtype=float)
+    there = np.asarray(design @ points, dtype=float)
+    return (np.vstack([points, points[:DEGREE]]) if closed else points), there
+
+
+def _raised(pen: Array, time: Array) -> tuple[tuple[float, float], ...]:
+    """The stretches of θ where the pen is up, [rad]."""
+    edges = np.flatnonzero(np.diff(pen.astype(int)))
+    theta = -np.pi + PERIOD * time / time[-1]
+    return tuple(
+        (float(theta[begin]), float(theta[end + 1]))
+        for begin, end in zip(edges[::2], edges[1::2], strict=True)
+    )
+
+
+def _compared(curve: SplineCurve, lines: list[Array]) -> SplineCurve:
+    """The curve with the drawing that it was given, and its deviation from it."""
+    from scipy.spatial import KDTree
+
+    dense = np.vstack([_even(line)[0] for line in lines])
+    theta = curve.sample(4 * curve.grid)
+    seen = curve.at(theta[curve.draws(theta)])
+    apart = KDTree(dense).query(seen)[0], KDTree(seen).query(dense)[0]
+    thin = sum(len(line) for line in lines) // DENSE + 1
+    given = np.vstack([line[::thin] for line in lines])
+    return replace(curve, deviation=float(np.concatenate(apart).max()), given=given)
