@@ -11,10 +11,12 @@ from onpath.app.common.allowance import Allowance
 from onpath.models.errors import CodedError
 
 MOST_BYTES = 1_000_000  # [B] of a file with a path
-MOST_TOGETHER = 50_000_000  # [B], of the files of all pages that are under way
+MOST_TOGETHER = 50_000_000  # [B], of the files of all pages that are under way, and that are kept
 SECONDS = 30.0  # [s] that a file may take from its first message to its last
 FILES, FILES_PER_SECOND = 10, 0.1
 """Files that a page may send in a burst, and per second in the long run."""
+AGAIN, AGAIN_PER_SECOND = 30, 1.0
+"""How often a page may have its last file read again, likewise."""
 
 
 class FileInbox:
@@ -27,13 +29,16 @@ class FileInbox:
     Attributes:
         file: that is under way, or None.
         received: how much of it has come, [B].
+        kept: number and content of the last one that was whole, which can be read again.
     """
 
     def __init__(self, largest: int, clock: Callable[[], float] = time.monotonic) -> None:
         self._largest, self._clock = largest, clock
         self._allowance = Allowance(FILES, FILES_PER_SECOND, clock)
         self._content, self._since = bytearray(), 0.0
+        self._repeats = Allowance(AGAIN, AGAIN_PER_SECOND, clock)
         self.file: SendFile | None = None
+        self.kept: tuple[int, bytes] | None = None
         _inboxes.add(self)
 
     @property
@@ -42,7 +47,9 @@ class FileInbox:
         return len(self._content)
 
     def begin(self, file: SendFile) -> bytes | None:
-        """Expect the parts of a file; returns its content if there are none, as it is empty.
+        """Expect the parts of a file; returns its content if none need come.
+
+        It is empty, or the same that came last.
 
         Raises:
             CodedError: it is too large, or not its turn.
@@ -50,8 +57,14 @@ class FileInbox:
         self.expire()
         if self.file is not None:
             raise CodedError("error.file_busy")
+        if file.again and self.kept is not None and self.kept[0] == file.again:
+            if not self._repeats.take():
+                raise CodedError("error.file_often")
+            self.kept = (file.number, self.kept[1])
+            return self.kept[1]
         if file.size > self._largest:
             raise CodedError("error.file_size", most=f"{self._largest / 1e6:g}")
+        self.kept = None
         together = sum(each.file.size for each in _inboxes if each.file is not None)
         if together + file.size > MOST_TOGETHER or not self._allowance.take():
             raise CodedError("error.file_often")
@@ -79,6 +92,9 @@ class FileInbox:
             return None
         content = bytes(self._content)
         self.forget()
+        kept = sum(len(each.kept[1]) for each in _inboxes if each.kept is not None)
+        if kept + len(content) <= MOST_TOGETHER:  # else it comes again when it is wanted again
+            self.kept = (file.number, content)
         return content
 
     def drop(self, message: DropFile) -> None:

@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from msgspec import Meta, Struct
 
 LONGEST_NAME = 200  # [characters] of a file's name
+MOST_PARTS = 200  # lines of a file that are shown and can be chosen
 
 # From the page
 
@@ -18,11 +19,18 @@ class PathFile(Struct, frozen=True, forbid_unknown_fields=True, tag_field="kind"
         size: of the path, [mm]; 0: as the file states it.
         radius: with which its corners are rounded, [mm]; 0: it is smoothed.
         opened: whether it is open, although its ends meet.
+        turn: angle by which it is turned anticlockwise, [degrees].
+        right, up: coordinates of its middle in the plane of the path, [mm].
+        part: number of the wanted line of the file, from 1; 0: the longest.
     """
 
     size: Annotated[float, Meta(ge=0, le=400)] = 100.0
     radius: Annotated[float, Meta(ge=0, le=100)] = 0.0
     opened: bool = False
+    turn: Annotated[float, Meta(ge=-360, le=360)] = 0.0
+    right: Annotated[float, Meta(ge=-400, le=400)] = 0.0
+    up: Annotated[float, Meta(ge=-400, le=400)] = 0.0
+    part: Annotated[int, Meta(ge=0, le=MOST_PARTS)] = 0
 
 
 class SendFile(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="send"):
@@ -34,12 +42,15 @@ class SendFile(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", 
         name: of the file.
         size: [B].
         use: what is done with it.
+        again: number of the same file when it was sent before, whose content need not come again;
+            0 if it was not.
     """
 
     number: int
     name: Annotated[str, Meta(max_length=LONGEST_NAME)]
     size: Annotated[int, Meta(ge=0)]
     use: PathFile
+    again: int = 0
 
 
 class SendPart(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="part"):
@@ -80,6 +91,19 @@ class MakeFile(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", 
 # To the page
 
 
+class PathHelp(Struct, frozen=True):
+    """What would help where a path cannot be followed.
+
+    Attributes:
+        text: of its button.
+        size, radius: of `PathFile`, with which the path can be followed, [mm].
+    """
+
+    text: str
+    size: float
+    radius: float
+
+
 class FileMessage(Struct, frozen=True, tag_field="is", tag="file"):
     """How far the server is with a file of the page.
 
@@ -87,13 +111,20 @@ class FileMessage(Struct, frozen=True, tag_field="is", tag="file"):
         number: of the file.
         state: more of it is awaited, it is being read, it has been used, or it is refused.
         received: how much has come, [B].
-        why: it is refused: a sentence in the page's language; else empty.
+        why: it is refused, or what is followed is only near it: a sentence in the page's language;
+            else empty.
+        lines: those in the file as they lie in it, each x, y, x, y, … from 0 to 1000; y points up.
+        part: number of the line that was taken, from 1; 0: none.
+        helps: what would help.
     """
 
     number: int
     state: Literal["awaited", "reading", "used", "refused"]
     received: int = 0
     why: str = ""
+    lines: tuple[tuple[int, ...], ...] = ()
+    part: int = 0
+    helps: tuple[PathHelp, ...] = ()
 
 
 class DownloadMessage(Struct, frozen=True, tag_field="is", tag="download"):

@@ -6,13 +6,17 @@ library that crashes or never returns cannot stop the lab; see `ExportProcess`.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import import_module
 
+import numpy as np
+
 from onpath.app.channel.file_inbox import MOST_BYTES
+from onpath.app.channel.file_messages import MOST_PARTS
 from onpath.app.common.error_log import log_error
 from onpath.app.exports.export_process import (
     ExportError,
@@ -22,15 +26,29 @@ from onpath.app.exports.export_process import (
 )
 from onpath.app.lab.commands import FollowCurve
 from onpath.lessons.words import Words
+from onpath.models.arrays import Array
 from onpath.models.errors import Coded, CodedError, Message
-from onpath.models.path_files.placing import Placing
-from onpath.models.path_files.reading import path_of
+from onpath.models.path_files.placing import RADIUS, ROUND, SMOOTH, Placing
+from onpath.models.path_files.reading import (
+    ImportedPath,
+    drawing_of,
+    path_of,
+    path_of_drawing,
+    taken_lines,
+)
+from onpath.models.path_files.stroke import LineDrawing
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curves import SeriesCurve
 from onpath.models.paths.nearest_path import nearest_path
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import Parameters
+from onpath.models.systems.robots import Robot
 
+PREVIEWED = 4000  # points of all lines that are shown before one is chosen
+SAMPLES = 256
+LARGEST = 0.4  # [m], size that a page can wish
+ARCS = (0.008, 0.012, 0.02, 0.03)  # [m], radii of corners that are tried where one is needed
+HELPING = 3.0  # [s] of processor time that the search for what helps may take
 STARTING = 60.0  # [s] that the process may take to start
 SECONDS = 15.0  # [s] that one file may take
 process = ExportProcess()
@@ -55,20 +73,51 @@ class Upload:
     parameters: Parameters
 
 
-def read_upload(upload: Upload, language: str) -> FollowCurve | Message | ValueError:
-    """The command that follows the path in a file, or why there is none. Runs in the process."""
+@dataclass(frozen=True, slots=True, eq=False)
+class Read:
+    """What became of a file.
+
+    Attributes:
+        found: the command that follows its path, or why there is none.
+        lines: points of the first lines of the file from 0 to 1, y upwards, shape (n, 2) each.
+        part: number of the line that was taken, from 1; 0: none.
+        why: why not the path itself is followed, in the page's language; else empty.
+        is_kept: whether not even one near it could be, so that the path remains as it was.
+        helps: what would help, and how the line must then be placed.
+    """
+
+    found: FollowCurve | Message | ValueError
+    lines: tuple[Array, ...] = ()
+    part: int = 0
+    why: str = ""
+    is_kept: bool = False
+    helps: tuple[tuple[Message, Placing], ...] = ()
+
+
+def read_upload(upload: Upload, language: str) -> Read:
+    """Read the path in a file. Runs in the process."""
+    drawing, placing = None, upload.placing
     try:
-        read = path_of(upload.content, upload.name, upload.placing, MOST_BYTES)
-    except Coded as error:
-        return error.message
+        drawing = _drawing(upload)
+        if drawing is None:  # a path in words, which has its own place
+            read = path_of(upload.content, upload.name, Placing(), MOST_BYTES)
+        else:
+            read = path_of_drawing(drawing, placing)
     except ValueError as error:
-        return error
+        why = error.message if isinstance(error, Coded) else error
+        return Read(why, _preview(drawing))
     curve, words = read.curve, Words(language)
     assert isinstance(curve, SeriesCurve)
-    margin, nearest = ROBOTS[upload.robot].make(upload.parameters).margin, None
-    if curve_faults(margin, curve):
-        nearest = nearest_path(margin, curve)
-    return FollowCurve(
+    robot, nearest = ROBOTS[upload.robot].make(upload.parameters), None
+    why, helps = "", tuple[tuple[Message, Placing], ...]()
+    if faults := curve_faults(robot.margin, curve):
+        nearest = nearest_path(robot.margin, curve)
+        reasons = "; ".join(words.sentence(fault.reason) for fault in faults)
+        apart = "" if nearest is None else f"{1e3 * nearest.deviation:.1f}"
+        why = words("design.nearest" if apart else "design.not_near", reasons=reasons, apart=apart)
+        if drawing is not None:
+            helps = tuple(_helps(robot, drawing, placing, read))
+    found = FollowCurve(
         closed=curve.closed,
         terms=curve.terms(),
         given=curve.given,
@@ -77,6 +126,70 @@ def read_upload(upload: Upload, language: str) -> FollowCurve | Message | ValueE
         apart=0.0 if nearest is None else nearest.deviation,
         remarks=" ".join(words.sentence(remark) for remark in read.remarks),
     )
+    part = 0 if drawing is None else taken_lines(drawing, placing.part)[0]
+    return Read(
+        found=found,
+        lines=_preview(drawing),
+        part=part,
+        why=why,
+        is_kept=bool(why) and nearest is None,
+        helps=helps,
+    )
+
+
+def _drawing(upload: Upload) -> LineDrawing | None:
+    """The lines of a file; None if it describes a path in words."""
+    try:
+        return drawing_of(upload.content, upload.name, most=MOST_BYTES)
+    except CodedError as error:
+        if error.message.code == "error.file_described":
+            return None
+        raise
+
+
+def _preview(drawing: LineDrawing | None) -> tuple[Array, ...]:
+    """A few points of each of the first lines, within the unit square."""
+    if drawing is None:
+        return ()
+    points = [stroke.points for stroke in drawing.strokes[:MOST_PARTS]]
+    most = max(2, PREVIEWED // len(points))
+    thin = [z[np.unique(np.linspace(0, len(z) - 1, most).astype(int))] for z in points]
+    low = np.min([z.min(0) for z in points], axis=0)
+    side = float((np.max([z.max(0) for z in points], axis=0) - low).max())
+    return tuple((z - low) / side if side > 0 else 0 * z for z in thin)
+
+
+def _helps(
+    robot: Robot, drawing: LineDrawing, placing: Placing, read: ImportedPath
+) -> Iterator[tuple[Message, Placing]]:
+    """The least changes of size and of corners with which the robot can follow a line."""
+    begun = time.process_time()
+    size = placing.fit or float(np.ptp(read.curve.sample(SAMPLES), axis=0).max())
+    radius = placing.radius if placing.corners == ROUND else 0.0
+    ways = (
+        ("design.larger", [(k * size, radius) for k in (1.25, 1.5, 2.0, 3.0)]),
+        ("design.smaller", [(k * size, radius) for k in (0.8, 0.65, 0.5)]),
+        ("design.rounder", [(size, r) for r in ARCS if r > radius]),
+        ("design.both", [(k * size, r) for r in ARCS if r > radius for k in (1.5, 2.0, 3.0)]),
+    )
+    helped = False
+    for code, tried in ways:
+        if helped and code == "design.both":
+            return
+        for side, arc in tried:
+            if time.process_time() - begun > HELPING:
+                return
+            if side > LARGEST:
+                continue
+            fit = round(side, 3)
+            corners = ROUND if arc else SMOOTH
+            other = replace(placing, fit=fit, corners=corners, radius=arc or RADIUS)
+            with suppress(ValueError):
+                if not curve_faults(robot.margin, path_of_drawing(drawing, other).curve):
+                    values = {"size": f"{1e3 * fit:.0f}", "radius": f"{1e3 * arc:.0f}"}
+                    yield Message(code, values), other
+                    helped = True
+                    break
 
 
 def import_libraries() -> None:
@@ -96,15 +209,15 @@ class PathReader:
         self,
         upload: Upload,
         language: str,
-        follow: Callable[[FollowCurve], None],
+        take: Callable[[Read], None],
         refuse: Callable[[Exception | Message], None],
     ) -> None:
         """Read a file in the background, and call one of the functions in another thread.
 
         Args:
             language: of the remarks.
-            follow: takes the command that follows the path.
-            refuse: takes the reason if there is none.
+            take: takes what has been read.
+            refuse: takes the reason if nothing has.
         """
         if self._busy:
             refuse(Message("error.file_busy"))
@@ -114,11 +227,7 @@ class PathReader:
         def work() -> None:
             try:
                 process.call(STARTING, import_libraries)
-                found = process.call(SECONDS, read_upload, upload, language)
-                if isinstance(found, FollowCurve):
-                    follow(found)
-                else:
-                    refuse(found)
+                take(process.call(SECONDS, read_upload, upload, language))
             except ExportStopped:
                 return  # the server is stopping
             except ExportError as error:

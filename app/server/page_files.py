@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
+import numpy as np
 from msgspec import Struct
 from typing_extensions import override
 
@@ -19,11 +20,13 @@ from onpath.app.channel.file_messages import (
     FileMessage,
     MakeFile,
     PathFile,
+    PathHelp,
     SendFile,
     SendPart,
 )
 from onpath.app.exports.exporter import Delivery, Exporter
-from onpath.app.exports.path_upload import PathReader, Upload
+from onpath.app.exports.path_upload import PathReader, Read, Upload
+from onpath.app.lab.commands import FollowCurve
 from onpath.app.lab.lab import Command, Lab
 from onpath.lessons.words import Words
 from onpath.models.errors import CodedError, Message
@@ -191,14 +194,18 @@ class PageFiles:
             parameters=simulation.parameters,
         )
 
-        def follow(command: Command) -> None:
-            self._post(command)
-            self._news.append(FileMessage(file.number, "used", len(content)))
+        words = Words(self._language)
+
+        def take(read: Read) -> None:
+            found = read.found
+            if isinstance(found, FollowCurve):
+                self._post(found)
+            self._news.append(_message(file, read, words))
 
         def refuse(reason: Exception | Message) -> None:
             self._news.append(self._refusal(file.number, reason))
 
-        self._reader.read(upload, self._language, follow, refuse)
+        self._reader.read(upload, self._language, take, refuse)
 
     def take(self) -> list[Struct]:
         """The messages that the page is told next. In the simulation thread."""
@@ -219,7 +226,31 @@ class PageFiles:
 def _placing(use: PathFile) -> Placing:
     return Placing(
         fit=use.size / 1e3 or None,
+        centre=(use.right / 1e3, use.up / 1e3) if use.size or use.right or use.up else None,
         corners=ROUND if use.radius else SMOOTH,
         radius=use.radius / 1e3 or RADIUS,
         closed=False if use.opened else None,
+        part=(use.part,) if use.part else None,
+        turn=use.turn,
     )
+
+
+def _message(file: SendFile, read: Read, words: Words) -> FileMessage:
+    """What a page is told of a file that was read."""
+    refusal = None if isinstance(read.found, FollowCurve) else read.found
+    return FileMessage(
+        number=file.number,
+        state="refused" if refusal is not None or read.is_kept else "used",
+        received=file.size,
+        why=read.why if refusal is None else words.sentence(refusal),
+        lines=tuple(
+            tuple(np.rint(1000 * line).astype(int).ravel().tolist()) for line in read.lines
+        ),
+        part=read.part,
+        helps=tuple(_help(placing, words.sentence(text)) for text, placing in read.helps),
+    )
+
+
+def _help(placing: Placing, text: str) -> PathHelp:
+    radius = 1e3 * placing.radius if placing.corners == ROUND else 0.0
+    return PathHelp(text=text, size=1e3 * (placing.fit or 0.0), radius=radius)

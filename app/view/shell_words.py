@@ -41,7 +41,9 @@ SHELL = (
     *("class.then", "class.gone", "class.elsewhere"),
     *("class.teacher", "class.key", "class.key_hint", "class.teach"),
     *("design.files", "design.size", "design.size_hint", "design.radius", "design.radius_hint"),
-    *("design.open", "design.open_hint", "design.upload", "design.reading"),
+    *("design.open", "design.open_hint", "design.upload", "design.reading", "design.lines"),
+    *("design.turn", "design.turn_hint", "design.part", "design.part_hint"),
+    *("design.right", "design.right_hint", "design.up", "design.up_hint"),
     *("export.title", "export.table", "export.picture", "export.film"),
     *("compare.title", "compare.text", "compare.laws", "compare.obstruction", "compare.run"),
     *("compare.law", "compare.distance", "compare.delay", "compare.force", "compare.put"),
@@ -55,6 +57,7 @@ FILLED = {
     "compare.count": ("most",),
     "class.of": ("code",),
     "design.followed": ("file",),
+    "design.chosen": ("file",),
     "class.member": ("name",),
     "class.too_long": ("most",),
 }

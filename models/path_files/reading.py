@@ -86,6 +86,16 @@ def path_of(data: bytes, name: str, placing: Placing, most: int = MOST_BYTES) ->
             raise CodedError("error.file_described")
         return _remarked(curve_from_text(text_of(data, encoding_of(data[:4]))), [])
     drawing = drawing_of(data, name, unit=placing.unit, layer=placing.layer, most=most)
+    return path_of_drawing(drawing, placing)
+
+
+def path_of_drawing(drawing: LineDrawing, placing: Placing) -> ImportedPath:
+    """The path of the wanted lines of a drawing.
+
+    Raises:
+        CodedError: there is no such path.
+    """
+    check_placing(placing)
     chosen, taken = _chosen(drawing.strokes, placing.part)
     stroke = max(chosen, key=lambda each: each.length)
     return _path(stroke, placing, [*taken, *drawing.remarks])
@@ -242,6 +252,12 @@ def _in_units(strokes: list[Stroke], unit: str | None, usual: float) -> list[Str
         return strokes
     factor = UNITS[unit] / usual
     return [replace(stroke, points=factor * stroke.points) for stroke in strokes]
+
+
+def taken_lines(drawing: LineDrawing, parts: tuple[int, ...] | None) -> tuple[int, ...]:
+    """The numbers of the lines that become the path, from 1, given the wanted ones."""
+    wanted = parts or range(1, len(drawing.strokes) + 1)
+    return (max(wanted, key=lambda part: drawing.strokes[part - 1].length),)
 
 
 def _chosen(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from onpath.app.channel.file_inbox import MOST_BYTES
@@ -35,7 +36,7 @@ def test_a_file_becomes_the_path_and_a_hostile_one_is_refused(tab: Tab) -> None:
     assert (width.max(0) - width.min(0)).max() == pytest.approx(100, abs=2)
     design = simulation.editor.design
     for name, content, words in (
-        ("bomb.svg", BOMB, "line 1: a DOCTYPE"),
+        ("bomb.svg", BOMB, "does not stand for plain text"),
         ("tool.nc", b"G0 X0 Y0\nG41 X3\n", "line 2, column 1: 'G41'"),
         ("big.csv", b"0.01,0.02\n" * (MOST_BYTES // 10 + 1), "larger than 1 MB"),
         ("b.csv", b"x,y\n0.05,0\n0,four\n", "'four' is not a number"),
@@ -47,3 +48,52 @@ def test_a_file_becomes_the_path_and_a_hostile_one_is_refused(tab: Tab) -> None:
     choose("points.csv", b"0;0\n4;0\n4;3\n0;3\n")
     wait_for(lambda: simulation.editor.design is not design, WAIT)
     assert tab.errors == []
+
+
+GIVE = """([kind, text]) => {
+    const data = new DataTransfer()
+    if (kind === "drop") data.items.add(new File([text], "a.svg"))
+    else data.setData("text/plain", text)
+    const init = { bubbles: true, cancelable: true, dataTransfer: data, clipboardData: data }
+    const Kind = kind === "drop" ? DragEvent : ClipboardEvent
+    document.body.dispatchEvent(new Kind(kind, init))
+}"""
+LINES = """<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 90 90">
+<ellipse cx="60" cy="60" rx="28" ry="20"/><circle cx="20" cy="20" r="15"/></svg>"""
+
+
+@pytest.mark.parametrize("way", ["drop", "paste"])
+def test_a_drawing_is_brought_to_the_page_its_line_pressed_and_its_size_changed(
+    tab: Tab, way: str
+) -> None:
+    page, editor = tab.page, tab.simulation.editor
+    page.evaluate(GIVE, [way, LINES])
+    page.get_by_role("img", name="The lines of the file").wait_for()
+    wait_for(lambda: editor.design.name == "drawn", WAIT)
+
+    def sides() -> list[float]:
+        return sorted(np.ptp(editor.design.curve.sample(400), axis=0) * 1e3)
+
+    short, long = sides()
+    assert short / long == pytest.approx(20 / 28, abs=0.01)
+    page.locator("polyline.press").nth(1).click()
+    wait_for(lambda: sides() == pytest.approx([long, long], abs=1), WAIT)
+    page.get_by_label("Size [mm]").fill(f"{0.7 * long:.0f}")
+    page.keyboard.press("Enter")
+    wait_for(lambda: sides() == pytest.approx([0.7 * long] * 2, abs=1), WAIT)
+    page.keyboard.press("Escape")
+    tab.press("File…")  # the same file is there again
+    page.get_by_label("Middle, up [mm]").fill("10")
+    page.keyboard.press("Enter")
+    middle = lambda: editor.design.curve.sample(400).mean(0) * 1e3  # noqa: E731
+    wait_for(lambda: middle() == pytest.approx([0, 10], abs=1), WAIT)
+    assert tab.errors == []
+
+
+def test_what_would_help_is_pressed_and_helps(tab: Tab) -> None:
+    editor = tab.simulation.editor
+    tab.page.evaluate(GIVE, ["paste", "G0 X0 Y0\nG1 X30\nY30\nX0\nY0\n"])
+    tab.page.get_by_text("Red is your drawing").wait_for(timeout=1e3 * WAIT)
+    tab.page.get_by_role("button", name="Round the corners to").click()
+    wait_for(lambda: not editor.faults and editor.design.name == "drawn", WAIT)
+    tab.page.get_by_text("Red is your drawing").wait_for(state="detached", timeout=1e3 * WAIT)

@@ -11,28 +11,37 @@ export interface Download extends Pick<DownloadMessage, "number" | "name" | "tex
     share: number
 }
 
+/** What became of a file that was sent; `state` is empty if it was given up. */
+export interface Answer extends Pick<FileMessage, "why" | "lines" | "part" | "helps"> {
+    state: "used" | "refused" | ""
+}
+
+const GIVEN_UP: Answer = { state: "", why: "", lines: [], part: 0, helps: [] }
+
 interface Upload {
     begin: SendFile
-    content: Blob
+    content: File
     told: (share: number) => void
-    done: (refusal: string) => void
+    done: (answer: Answer) => void
 }
 
 export class Files {
     private number = 0
     private upload: Upload | null = null
+    private kept: { file: File; number: number } | null = null // that the server has read last
     private coming: { begin: DownloadMessage; parts: Uint8Array<ArrayBuffer>[]; received: number } | null = null
     private readonly listeners = new Set<(download: Download) => void>()
 
     constructor(private readonly tell: (message: PageMessage) => void) {}
 
-    /** Send a file. The promise has why it was refused, in the page's language; an empty text if it has been used.
+    /** Send a file, or have the same one read again.
      * @param told is told the share that has arrived
-     * @param stopped gives it up; the promise then has an empty text */
-    send(file: File, use: SendFile["use"], told: (share: number) => void = () => {}, stopped?: AbortSignal): Promise<string> {
+     * @param stopped gives it up */
+    send(file: File, use: SendFile["use"], told: (share: number) => void = () => {}, stopped?: AbortSignal): Promise<Answer> {
         this.give()
         return new Promise(done => {
-            const begin: SendFile = { is: "send", number: ++this.number, name: file.name.slice(0, 200), size: file.size, use }
+            const again = this.kept?.file === file ? this.kept.number : 0
+            const begin: SendFile = { is: "send", number: ++this.number, name: file.name.slice(0, 200), size: file.size, use, again }
             const upload = (this.upload = { begin, content: file, told, done })
             stopped?.addEventListener("abort", () => upload === this.upload && this.give())
             this.tell(begin)
@@ -62,7 +71,7 @@ export class Files {
         }
     }
 
-    private async answered({ number, state, received, why }: FileMessage): Promise<void> {
+    private async answered({ number, state, received, ...answer }: FileMessage): Promise<void> {
         const { upload } = this
         if (upload?.begin.number !== number) return
         const { begin, content, told, done } = upload
@@ -72,7 +81,8 @@ export class Files {
             if (this.upload === upload && upload.begin.number === number) this.tell({ is: "part", number, content: coded(bytes) })
         } else if (state !== "reading") {
             this.upload = null
-            done(why)
+            this.kept = { file: content, number }
+            done({ state, ...answer })
         }
     }
 
@@ -97,7 +107,7 @@ export class Files {
         this.upload = null
         if (!upload) return
         this.tell({ is: "drop", number: upload.begin.number })
-        upload.done("")
+        upload.done(GIVEN_UP)
     }
 
     private say({ number, name, text }: DownloadMessage, state: Download["state"], share: number): void {

@@ -148,6 +148,14 @@ export interface PathFile {
     radius?: number
     /** whether it is open, although its ends meet. */
     opened?: boolean
+    /** angle by which it is turned anticlockwise, [degrees]. */
+    turn?: number
+    /** coordinates of its middle in the plane of the path, [mm]. */
+    right?: number
+    /** coordinates of its middle in the plane of the path, [mm]. */
+    up?: number
+    /** number of the wanted line of the file, from 1; 0: the longest. */
+    part?: number
 }
 
 /** A file will come in parts: the first after the answer to this, `FileMessage`, and each further one after the answer to
@@ -162,6 +170,8 @@ export interface SendFile {
     size: number
     /** what is done with it. */
     use: PathFile
+    /** number of the same file when it was sent before, whose content need not come again; 0 if it was not. */
+    again?: number
 }
 
 /** The next part of a file. */
@@ -566,6 +576,16 @@ export interface MeasuredMessage {
     truth: Curves | null
 }
 
+/** What would help where a path cannot be followed. */
+export interface PathHelp {
+    /** of its button. */
+    text: string
+    /** of `PathFile`, with which the path can be followed, [mm]. */
+    size: number
+    /** of `PathFile`, with which the path can be followed, [mm]. */
+    radius: number
+}
+
 /** How far the server is with a file of the page. */
 export interface FileMessage {
     is: "file"
@@ -575,8 +595,14 @@ export interface FileMessage {
     state: "awaited" | "reading" | "refused" | "used"
     /** how much has come, [B]. */
     received: number
-    /** it is refused: a sentence in the page's language; else empty. */
+    /** it is refused, or what is followed is only near it: a sentence in the page's language; else empty. */
     why: string
+    /** those in the file as they lie in it, each x, y, x, y, … from 0 to 1000; y points up. */
+    lines: number[][]
+    /** number of the line that was taken, from 1; 0: none. */
+    part: number
+    /** what would help. */
+    helps: PathHelp[]
 }
 
 /** How far the server is with a file for the page. */

@@ -6,7 +6,7 @@ import { phrase, type Texts } from "../core/words"
 import { ClassSheet } from "../parts/class_sheet"
 import { LawComparison } from "../parts/compare_sheet"
 import { display } from "../parts/display_sheet"
-import { pathFromFile } from "../parts/file_sheet"
+import { noFile, pastedFile, pathFromFile } from "../parts/file_sheet"
 import type { Form } from "../parts/form"
 import { Header } from "../parts/header"
 import { help } from "../parts/help_sheet"
@@ -45,6 +45,7 @@ export class Shell {
     private compare: LawComparison | null = null
     private seat: ClassSheet | null = null
     private place = "" // the lab's in the class, as it was told last
+    private readonly chosen = noFile()
     private dropped: File | undefined // for the sheet that is opened next
     private leaves = false // whether it leaves the class by itself
 
@@ -61,6 +62,7 @@ export class Shell {
         engine.onNews(news => this.hear(news), signal)
         addEventListener("dragover", event => hasFile(event) && event.preventDefault(), { signal }) // or it takes the page's place
         addEventListener("drop", event => this.drop(event), { signal })
+        addEventListener("paste", event => this.paste(event), { signal })
         this.follow()
         this.sit()
         if (reopen in TITLES && !this.opened) void this.open(reopen as Opens)
@@ -90,7 +92,7 @@ export class Shell {
                 teach: this.isClassroom ? () => void this.open("teach") : null,
             }),
             keep: async () => (this.keep = new Keep(texts, await engine.ask("keep"), send, () => (this.keep = null))).open(),
-            file: () => Promise.resolve(pathFromFile(texts, engine.files, this.dropped)),
+            file: () => Promise.resolve(pathFromFile(texts, engine.files, this.chosen, this.dropped)),
             compare: async () => {
                 const data = await engine.ask("compare")
                 return (this.compare ??= new LawComparison(texts, { send, get laws() { return engine.lab!.laws } })).open(data)
@@ -106,9 +108,22 @@ export class Shell {
     private drop(event: DragEvent): void {
         if (!hasFile(event) || event.defaultPrevented) return
         event.preventDefault()
+        this.take(event.dataTransfer!.files[0])
+    }
+
+    /** So is a drawing that is pasted where nothing is typed. */
+    private paste(event: ClipboardEvent): void {
+        const isTyped = (event.target as Partial<HTMLElement>).closest?.("input, textarea, [contenteditable]")
+        const file = isTyped ? undefined : pastedFile(event)
+        if (!file) return
+        event.preventDefault()
+        this.take(file)
+    }
+
+    private take(file: File | undefined): void {
         const { own, frozen } = this.engine.lab!
-        if (!own || frozen || isSheetOpen()) return
-        this.dropped = event.dataTransfer!.files[0]
+        if (!file || !own || frozen || isSheetOpen()) return
+        this.dropped = file
         void this.open("file")
         this.dropped = undefined
     }

@@ -1,73 +1,151 @@
-// A path from a file: what is made of its line, how far it has come, and why it cannot be followed. What is set acts on the
-// file that was chosen until the sheet is closed.
+// A path from a file: what is made of its lines, how far it has come, and why it cannot be followed. What is set acts on the
+// file that was chosen last, also when the sheet is opened again.
 
-import type { Files } from "../channel/files"
-import { made, refuse, switchInput, tell } from "../core/dom"
+import type { Answer, Files } from "../channel/files"
+import type { FileMessage, PathFile as Wished } from "../channel/messages"
+import { made, refuse, svg, switchInput, tell } from "../core/dom"
 import { phrase, type Texts } from "../core/words"
 import { pressed, SheetDialog } from "./sheet"
 
-const KINDS = ".csv,.txt,.tsv,.svg,.gcode,.nc,.ngc"
+const KINDS = ".csv,.txt,.tsv,.svg,.gcode,.nc,.ngc,.gc,.tap,.cnc"
+const SIZE = 1000 // of the square in which lines are told
+const MARGIN = 40 // around it
+type PathFile = Required<Wished>
+const USUAL: PathFile = { kind: "path", size: 100, radius: 0, opened: false, turn: 0, right: 0, up: 0, part: 0 }
+const NUMBERS = { size: [0, 400, 5], radius: [0, 100, 1], turn: [-360, 360, 5], right: [-400, 400, 5], up: [-400, 400, 5] } as const
+type NumberName = keyof typeof NUMBERS
+const NAMES = Object.keys(NUMBERS) as NumberName[]
+
+/** The file that was chosen last, and what is made of it. */
+export interface ChosenFile {
+    file: File | null
+    use: PathFile
+    lines: FileMessage["lines"]
+    part: number
+}
+
+export const noFile = (): ChosenFile => ({ file: null, use: USUAL, lines: [], part: 0 })
 
 /** A sheet that takes a file, or has been given one. */
-export function pathFromFile(texts: Texts, files: Files, dropped?: File): SheetDialog {
+export function pathFromFile(texts: Texts, files: Files, chosen: ChosenFile, dropped?: File): SheetDialog {
     const given = new AbortController()
     const sheet = new SheetDialog(texts, "file", phrase(texts, "design.files"), () => given.abort())
-    const number = (key: string, value: number, max: number, step: number) => {
-        const box = Object.assign(made("input", ""), { type: "number", min: "0", max: String(max), step: String(step), valueAsNumber: value })
+    const number = (key: string, [min, max, step]: readonly [number, number, number]) => {
+        const box = Object.assign(made("input", ""), { type: "number", min: String(min), max: String(max), step: String(step) })
         box.title = phrase(texts, `design.${key}_hint`)
+        box.addEventListener("change", () => void follow())
         return { box, label: made("label", "row", made("span", "", phrase(texts, `design.${key}`)), box) }
     }
-    const size = number("size", 100, 400, 5), radius = number("radius", 0, 100, 1)
+    const fields = Object.fromEntries(NAMES.map(name => [name, number(name, NUMBERS[name])])) as Record<NumberName, ReturnType<typeof number>>
+    const part = number("part", [1, 1, 1])
     const opened = switchInput({ title: phrase(texts, "design.open_hint") })
+    opened.addEventListener("change", () => void follow())
     const chooser = Object.assign(made("input", ""), { type: "file", accept: KINDS, hidden: true })
     const choose = pressed("main", phrase(texts, "design.upload"), () => chooser.click())
-    const state = made("p", "state"), refusal = made("p", "refusal")
+    const state = made("p", "state"), refusal = made("p", "refusal"), helps = made("div", "row helps")
     const bar = Object.assign(made("progress", ""), { max: 1, hidden: true, ariaLabel: phrase(texts, "design.reading") })
+    const edge = `${-MARGIN} ${-MARGIN} ${SIZE + 2 * MARGIN} ${SIZE + 2 * MARGIN}`
+    const picture = svg("svg", { class: "lines", viewBox: edge, role: "img", "aria-label": phrase(texts, "design.lines") })
     state.role = "status"
     refusal.role = "alert"
 
-    let file: File | null = null, isBusy = false, isStale = false
-    const use = () => {
-        const limit = (box: HTMLInputElement) => Math.min(Math.max(box.valueAsNumber || 0, 0), Number(box.max))
-        return { kind: "path", size: limit(size.box), radius: limit(radius.box), opened: opened.checked } as const
+    const put = (use: PathFile) => {
+        for (const name of NAMES) fields[name].box.valueAsNumber = use[name]
+        opened.checked = use.opened
     }
+    const use = (): PathFile => {
+        const limit = ({ box }: { box: HTMLInputElement }) => Math.min(Math.max(box.valueAsNumber || 0, Number(box.min)), Number(box.max))
+        const numbers = Object.fromEntries(NAMES.map(name => [name, limit(fields[name])])) as Record<NumberName, number>
+        return { ...numbers, kind: "path", opened: opened.checked, part: chosen.lines.length > 1 ? limit(part) : 0 }
+    }
+    let isBusy = false, isStale = false
     const follow = async () => {
         isStale = true
-        if (!file || isBusy) return
+        if (!chosen.file || isBusy) return
         isBusy = choose.disabled = true
         bar.hidden = false
         refuse(refusal, "")
+        helps.replaceChildren()
         tell(state, phrase(texts, "design.reading"))
-        let why = ""
+        let answer: Answer | null = null
         while (isStale && !given.signal.aborted) {
             isStale = false
-            why = await files.send(file, use(), share => (bar.value = share), given.signal)
+            chosen.use = use()
+            answer = await files.send(chosen.file, chosen.use, share => (bar.value = share), given.signal)
         }
         isBusy = choose.disabled = false
         bar.hidden = true
-        tell(state, why ? "" : phrase(texts, "design.followed", { file: file.name }))
-        refuse(refusal, why)
-        sheet.element.classList.toggle("followed", !why)
+        if (answer) show(answer)
         if (document.activeElement === document.body) choose.focus() // it was not to be pressed meanwhile
     }
-    const take = (chosen: File | undefined) => {
-        if (!chosen || isBusy) return
-        file = chosen
+    const show = (answer: Answer) => {
+        const isFollowed = answer.state === "used"
+        if (answer.lines.length) [chosen.lines, chosen.part] = [answer.lines, answer.part || chosen.part]
+        draw()
+        tell(state, isFollowed ? phrase(texts, "design.followed", { file: chosen.file!.name }) : "")
+        refuse(refusal, answer.why)
+        helps.replaceChildren(...answer.helps.map(({ text, size, radius }) => pressed("", text, () => {
+            put({ ...use(), size, radius })
+            void follow()
+        })))
+        sheet.element.classList.toggle("followed", isFollowed)
+    }
+    /** Draw the lines of the file. Each can be pressed. */
+    const draw = () => {
+        const { lines } = chosen, isOne = lines.length < 2
+        part.label.hidden = isOne
+        part.box.max = String(Math.max(lines.length, 1))
+        part.box.valueAsNumber = chosen.part || 1
+        picture.style.display = lines.length ? "" : "none"
+        picture.replaceChildren(...lines.flatMap((line, i) => {
+            const points = line.map((each, k) => (k % 2 ? SIZE - each : each)).join(" ")
+            const press = svg("polyline", { points, class: "press" })
+            press.addEventListener("click", () => {
+                if (isOne || isBusy) return
+                part.box.valueAsNumber = i + 1
+                void follow()
+            })
+            return [svg("polyline", { points, class: i + 1 === chosen.part ? "taken" : "" }), press]
+        }))
+    }
+    const take = (file: File | undefined) => {
+        if (!file || isBusy) return
+        Object.assign(chosen, { file, lines: [], part: 0 })
+        draw()
         void follow()
     }
     chooser.addEventListener("change", () => {
         take(chooser.files?.[0])
         chooser.value = "" // the same file may be chosen again
     })
-    for (const input of [size.box, radius.box, opened]) input.addEventListener("change", () => void follow())
     sheet.element.addEventListener("dragover", event => event.preventDefault())
     sheet.element.addEventListener("drop", event => {
         event.preventDefault()
         take(event.dataTransfer?.files[0])
     })
+    sheet.element.addEventListener("paste", event => {
+        if (event.target instanceof HTMLInputElement && event.target.type === "number") return
+        take(pastedFile(event))
+    })
+    put(chosen.use)
+    draw()
+    if (chosen.file) tell(state, phrase(texts, "design.chosen", { file: chosen.file.name }))
     const open = made("label", "row", made("span", "", phrase(texts, "design.open")), opened)
-    sheet.body.append(made("p", "note", phrase(texts, "design.upload_hint")), size.label, radius.label, open, made("div", "row", choose, chooser, bar), state, refusal)
+    const rows = NAMES.map(name => fields[name].label)
+    sheet.body.append(
+        made("p", "note", phrase(texts, "design.upload_hint")), made("div", "row", choose, chooser, bar), state, refusal, helps,
+        picture, part.label, ...rows, open,
+    )
     sheet.open(choose)
     take(dropped)
     return sheet
+}
+
+/** A drawing in the clipboard, as a file: a copied file, or the text of one. */
+export function pastedFile({ clipboardData }: ClipboardEvent): File | undefined {
+    const file = clipboardData?.files[0]
+    if (file) return file
+    const text = clipboardData?.getData("text/plain") ?? ""
+    const isDrawing = /^\s*<(\?xml|!doctype svg|!--|svg)/i.test(text) || /^[^\n]*\d[^\n]*\n[^\n]*\d/.test(text.trim())
+    return isDrawing ? new File([text], "clipboard.txt", { type: "text/plain" }) : undefined
 }

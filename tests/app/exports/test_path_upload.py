@@ -14,7 +14,7 @@ import pytest
 from onpath.app.channel.file_inbox import MOST_BYTES
 from onpath.app.exports import path_upload
 from onpath.app.exports.export_process import ExportProcess
-from onpath.app.exports.path_upload import PathReader, Upload
+from onpath.app.exports.path_upload import PathReader, Read, Upload
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.lessons.words import ENGLISH
@@ -78,12 +78,18 @@ def stopped() -> Iterator[None]:
 SIZED = Placing(fit=0.1)
 
 
+def read(content: bytes, name: str, placing: Placing = SIZED) -> Read:
+    """What was read, in this process."""
+    upload = Upload(name, content, placing, FIVE_BAR.name, FIVE_BAR.parameters())
+    return path_upload.read_upload(upload, "en")
+
+
 def answer(content: bytes, name: str, placing: Placing = SIZED) -> Any:
     """The command, or the reason of the refusal."""
     found, done = list[Any](), threading.Event()
 
     def take(result: Any) -> None:
-        found.append(result)
+        found.append(result.found if isinstance(result, Read) else result)
         done.set()
 
     upload = Upload(name, content, placing, FIVE_BAR.name, FIVE_BAR.parameters())
@@ -115,7 +121,7 @@ def test_what_is_dear_is_refused_long_before_the_time_is_over(case: str) -> None
     placing = Placing(fit=0.1, corners=ROUND)
     upload = Upload(name, content, placing, FIVE_BAR.name, FIVE_BAR.parameters())
     begun = time.process_time()
-    refusal = path_upload.read_upload(upload, "en")
+    refusal = path_upload.read_upload(upload, "en").found
     assert time.process_time() - begun < 5.0
     assert isinstance(refusal, Message) and re.search(words, refusal.text())
 
@@ -152,7 +158,7 @@ def test_a_tab_reads_one_file_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None
     class Slow:
         def call(self, *_: Any) -> Any:
             hold.wait(WAIT)
-            return c.FollowCurve(True, np.zeros((25, 2)))
+            return Read(c.FollowCurve(True, np.zeros((25, 2))))
 
     monkeypatch.setattr(path_upload, "process", Slow())
     upload = Upload("a.csv", b"0,0", Placing(), FIVE_BAR.name, FIVE_BAR.parameters())
@@ -196,3 +202,50 @@ def test_what_nothing_near_could_follow_is_refused_and_the_old_path_kept() -> No
     do(lab, answer(b"0,0\n1,0.001\n2,0\n1,-0.001\n", "a.csv"))
     assert lab.simulation.editor.design is before and "refused" in lab.message
     assert len(take_page_snapshot(lab, 1.0).path.refused)
+
+
+LINES = b"""<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 90 90">
+<circle cx="20" cy="20" r="10"/><circle cx="60" cy="60" r="20"/><circle cx="20" cy="70" r="8"/>
+</svg>"""
+
+
+def test_all_lines_are_shown_as_they_lie_in_the_file_and_any_can_be_taken() -> None:
+    longest = read(LINES, "a.svg")
+    assert len(longest.lines) == 3 and longest.part == 2 and not longest.helps
+    low = np.min([line.min(0) for line in longest.lines], axis=0)
+    high = np.max([line.max(0) for line in longest.lines], axis=0)
+    assert low == pytest.approx([0, 0]) and high.max() == pytest.approx(1)
+    middles = np.array([line.mean(0) for line in longest.lines])
+    assert middles[0, 1] > middles[1, 1] and middles[0, 0] < middles[1, 0]  # y points up
+    assert read(LINES, "a.svg", Placing(fit=0.1, part=(3,))).part == 3
+    none = read(LINES, "a.svg", Placing(fit=0.1, part=(4,)))
+    assert isinstance(none.found, Message) and len(none.lines) == 3
+
+
+@pytest.mark.parametrize(("size", "sides"), [(0.03, 4), (0.04, 4), (0.05, 3), (0.06, 6)])
+def test_what_is_said_to_help_does(size: float, sides: int) -> None:
+    angles = np.linspace(0, 2 * np.pi, sides + 1) + 0.3
+    points = np.column_stack([np.cos(angles), np.sin(angles)])
+    content = "".join(
+        f"G{min(i, 1)} X{x:.4f} Y{y:.4f}\n" for i, (x, y) in enumerate(points)
+    ).encode()
+    found = read(content, "a.nc", Placing(fit=size))
+    assert found.why and found.helps
+    for text, placing in found.helps:
+        again = read(content, "a.nc", placing)
+        assert isinstance(again.found, c.FollowCurve) and not again.why, text
+
+
+def test_undo_takes_back_an_upload_and_each_change_of_its_placing_as_one_step() -> None:
+    lab, designs = new_lab(0.2), list[Any]()
+    editor = lab.simulation.editor
+    for size in (0.06, 0.08, 0.1):
+        designs.append(editor.design)
+        command = read(LINES, "a.svg", Placing(fit=size)).found
+        assert isinstance(command, c.FollowCurve)
+        do(lab, command)
+    for design in reversed(designs):
+        do(lab, c.Undo())
+        assert editor.design is design
+    do(lab, c.Undo())
+    assert editor.design is designs[0]

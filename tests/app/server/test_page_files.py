@@ -132,6 +132,18 @@ def test_the_robots_follow_the_path_in_a_file_of_the_page(script: Script) -> Non
     assert script.read_until("path", is_there)["closed"]  # after the blend
 
 
+def test_the_same_file_is_read_again_without_coming_again(script: Script) -> None:
+    content = CIRCLE.encode()
+    assert len(send(script, 1, content)["lines"]) == 1
+    fields = {"name": "a.csv", "size": len(content), "use": {"kind": "path", "size": 80.0}}
+    for number in (2, 3):
+        say(script, "send", number=number, again=number - 1, **fields)
+        assert script.read("file")["state"] == "reading"
+        assert script.read("file")["state"] == "used"
+    say(script, "send", number=4, again=1, **fields)  # that one is no longer known by this number
+    assert script.read("file")["state"] == "awaited"
+
+
 def test_a_file_that_cannot_be_used_is_refused_with_a_sentence(script: Script) -> None:
     assert send(script, 1, b"no numbers here")["why"]
     say(script, "send", number=2, name="a", size=10**7, use={"kind": "path"})

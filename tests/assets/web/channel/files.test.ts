@@ -19,7 +19,9 @@ class Server {
 
     constructor(private readonly refuses = "", private readonly loses = -1) {}
 
-    private answer(message: Omit<FileMessage, "is">): void { this.files.hear({ is: "file", ...message }) }
+    private answer(message: Omit<FileMessage, "is" | "lines" | "part" | "helps">): void {
+        this.files.hear({ is: "file", lines: [], part: 0, helps: [], ...message })
+    }
 
     private take(message: PageMessage): void {
         if (message.is === "send") {
@@ -51,8 +53,8 @@ function text(bytes: Uint8Array): string {
 test("a file arrives as it is, part by part, with its progress", async () => {
     for (const size of [0, 1, 95_999, 96_000, 96_001, 400_000]) {
         const server = new Server(), content = random(size), shares: number[] = []
-        const refusal = await server.files.send(new File([content], "a.csv"), PATH, share => shares.push(share))
-        assert.equal(refusal, "")
+        const { why } = await server.files.send(new File([content], "a.csv"), PATH, share => shares.push(share))
+        assert.equal(why, "")
         assert.equal(server.content, text(content))
         assert.deepEqual(shares, [...shares].sort((a, b) => a - b))
         assert.equal(shares.at(-1), 1)
@@ -60,12 +62,12 @@ test("a file arrives as it is, part by part, with its progress", async () => {
 })
 
 test("a refused file says why", async () => {
-    assert.equal(await new Server("too large").files.send(new File(["abc"], "a"), PATH), "too large")
+    assert.equal((await new Server("too large").files.send(new File(["abc"], "a"), PATH)).why, "too large")
 })
 
 test("a file whose connection is lost is sent anew", async () => {
     const server = new Server("", 3), content = random(200_000)
-    assert.equal(await server.files.send(new File([content], "a"), PATH), "")
+    assert.equal((await server.files.send(new File([content], "a"), PATH)).state, "used")
     assert.equal(server.content, text(content))
     assert.equal(server.heard.filter(each => each.is === "send").length, 2)
     assert.ok(server.heard.some(each => each.is === "drop"))
@@ -75,11 +77,11 @@ test("a second file takes the place of the first, and a file can be given up", a
     const server = new Server(), [one, other] = [random(300_000), random(100_000)]
     const first = server.files.send(new File([one], "one"), PATH)
     const second = server.files.send(new File([other], "other"), PATH)
-    assert.deepEqual(await Promise.all([first, second]), ["", ""])
+    assert.deepEqual((await Promise.all([first, second])).map(({ state }) => state), ["", "used"])
     assert.equal(server.content, text(other))
     const stopped = new AbortController()
     const third = server.files.send(new File([one], "one"), PATH, () => stopped.abort(), stopped.signal)
-    assert.equal(await third, "")
+    assert.equal((await third).state, "")
     assert.notEqual(server.content.length, one.length)
 })
 
