@@ -164,7 +164,7 @@ def _helps(
 ) -> Iterator[tuple[Message, Placing]]:
     """The least changes of size and of corners with which the robot can follow a line."""
     begun = time.process_time()
-    size = placing.fit or float(np.ptp(read.curve.sample(SAMPLES), axis=0).max())
+    size = placing.fit or float(np.ptp(read.curve.at(read.curve.sample(SAMPLES)), axis=0).max())
     radius = placing.radius if placing.corners == ROUND else 0.0
     ways = (
         ("design.larger", [(k * size, radius) for k in (1.25, 1.5, 2.0, 3.0)]),

@@ -92,6 +92,7 @@ class ClientScene:
         self._rebuilds = WorkThread("rebuild")
         self._framed, self._settling = 0.0, SETTLING  # width / height, to which the camera fits
         self._is_placed = False  # whether the camera is where it was put
+        self._on_path = False  # whether it looks at the path
         self._steps = StepDrawings(switches, course)
         self._building, self.is_outdated = True, False
         with in_turn(), client.atomic():
@@ -134,7 +135,12 @@ class ClientScene:
 
     def reset_view(self) -> None:
         """Schedule a reset of the camera to its initial pose. Thread-safe."""
-        self._framed = 0.0
+        self._on_path, self._framed = False, 0.0
+
+    def look_at_path(self) -> None:
+        """Look at the path from above, now and until the view is reset."""
+        self._on_path = True
+        self.settle()
 
     def send(self) -> None:
         """Send the frame to the browser."""
@@ -148,7 +154,8 @@ class ClientScene:
         robot = robot_of(snapshot)
         stage = stage_of(robot)
         width, height = max(camera.image_width, 1), max(camera.image_height, 1)
-        pose = view_of(stage, (width, height), _top(height))
+        path = snapshot.motion.path.points if self._on_path else None
+        pose = view_of(stage, (width, height), _top(height), path)
         off, away = (np.linalg.norm(x - pose.position) for x in (camera.position, pose.look_at))
         self._is_placed = bool(off < NEAR * away) or not self._settling
         return seen_from(pose, stage, robot)
@@ -170,6 +177,7 @@ class ClientScene:
             self._rebuilds.submit(lambda: self._rebuild(snapshot))
 
     def _rebuild(self, first: PageSnapshot) -> None:
+        self._on_path &= self._robot == robot_of(first)
         with in_turn(), self.client.atomic():
             clear_scene(self.client)
             self.settle()
@@ -207,9 +215,9 @@ class ClientScene:
         overlays.follow(snapshot)
         scene.show_singular_zone("zone" in self.switches and self._robot.frame.p == 2)
         scene.show_start("start" in self.switches)
-        self._frame_camera()
+        self._frame_camera(motion.path.points)
 
-    def _frame_camera(self) -> None:
+    def _frame_camera(self, path: Array) -> None:
         """Refit the camera to both robots when the aspect ratio of the view changes.
 
         The size in device pixels is ignored, because slow browsers change it on their own. While
@@ -224,7 +232,7 @@ class ClientScene:
         shape = width / max(height, 1)
         if width > 0 and abs(shape - self._framed) > 0.01 * shape:
             self._framed = shape
-            self._scene.frame_camera(_top(height))
+            self._scene.frame_camera(_top(height), path if self._on_path else None)
 
 
 def _top(height: float) -> float:

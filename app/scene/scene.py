@@ -34,6 +34,7 @@ from onpath.app.scene.wall_nodes import WallNodes
 from onpath.app.view.captions import Captions
 from onpath.app.viser_adapter.camera import place_camera
 from onpath.lessons.words import ENGLISH, Words
+from onpath.models.arrays import Array
 
 if TYPE_CHECKING:
     import viser
@@ -169,11 +170,15 @@ class Scene:
             self._start.show(visible)
             self.mouse.connect_bodies(self._machine.bodies, visible)
 
-    def frame_camera(self, top: float) -> None:
-        """Point the client's camera so that both robots fill the canvas below a margin [px]."""
+    def frame_camera(self, top: float, path: Array | None = None) -> None:
+        """Point the client's camera so that both robots fill the canvas below a margin [px].
+
+        Args:
+            path: the points of a path that is to be seen from above; see `view_of`.
+        """
         camera = self._client.camera
         size = (max(camera.image_width, 1), max(camera.image_height, 1))
-        pose = view_of(self._stage, size, top)
+        pose = view_of(self._stage, size, top, path)
         place_camera(self._client, pose.position, pose.look_at, UP, float(FIELD_OF_VIEW))
 
     def begin_freehand(self, on_stroke: Callable[[np.ndarray], None]) -> None:

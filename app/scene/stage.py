@@ -31,6 +31,9 @@ FIRST_SIZE = 1400.0, 800.0
 """Of a canvas, until a browser has reported its own [px]."""
 HIGHER = 0.3
 """How much higher than the middle the robots are, as a share of half of the room that is left."""
+FACING, STEEPEST, AROUND = 0.75, np.radians(65.0), 1.5
+"""A path's plane is seen well if the cosine between its normal and the view is larger; the steepest
+view of one that is not; room around the path, as a multiple of its size."""
 TEXT = 0.022
 """Usual height of text in the scene [m]."""
 TITLE, AIM = (0.0, 0.03), (0.037, 0.022)
@@ -138,20 +141,44 @@ class Pose:
     look_at: np.ndarray
 
 
-def view_of(stage: Stage, size: tuple[float, float], top: float = 0.0) -> Pose:
+def view_of(
+    stage: Stage, size: tuple[float, float], top: float = 0.0, path: Array | None = None
+) -> Pose:
     """The camera that shows all robots as large as the canvas allows below a margin.
 
     Args:
         size: width and height of the canvas [px].
         top: height of the margin [px].
+        path: points of a path in a robot's frame, shape (n, 3), [m]. If its plane is seen from the
+            side, the camera rises, and it is the paths that are as large as the canvas allows.
     """
+    elevation, corners = stage.elevation, stage.corners
+    if path is not None and _facing(stage, elevation) < FACING:
+        elevation = max(np.linspace(elevation, STEEPEST, 16), key=lambda e: _facing(stage, e))
+        middle = (path.min(0) + path.max(0)) / 2
+        corners = (stage.origins[:, None] + middle + AROUND * (path - middle)).reshape(-1, 3)
+    return _fitted(stage, elevation, corners, size, top)
+
+
+def _facing(stage: Stage, elevation: float) -> float:
+    """Cosine between the camera's axis and the normal of the path's plane, not negative."""
+    turn, level = stage.azimuth, np.cos(elevation)
+    forward = [-np.sin(turn) * level, np.cos(turn) * level, -np.sin(elevation)]
+    normal = stage.path_plane.normal
+    return float(abs(normal @ forward) / np.linalg.norm(normal))
+
+
+def _fitted(
+    stage: Stage, elevation: float, corners: Array, size: tuple[float, float], top: float
+) -> Pose:
+    """The camera at an elevation [rad] that shows points of the world, shape (k, 3), largest."""
     width, height = size
-    ce, se = np.cos(stage.elevation), np.sin(stage.elevation)
+    ce, se = np.cos(elevation), np.sin(elevation)
     ca, sa = np.cos(stage.azimuth), np.sin(stage.azimuth)
     right = np.array([ca, sa, 0.0])
     forward = np.array([-sa * ce, ca * ce, -se])
     up = np.array([-sa * se, ca * se, ce])
-    seen = stage.corners @ np.stack([right, up, forward], 1)
+    seen = corners @ np.stack([right, up, forward], 1)
     middle = (seen.min(0) + seen.max(0)) / 2
     centre = middle @ np.stack([right, up, forward])
     x, y, z = (seen - middle).T

@@ -176,6 +176,9 @@ class PageData:
             text.end_introduction()
         while self._requests:
             self._server.serve(self._requests.popleft(), snapshot, scene, self._answer)
+        if self._files.follows and scene is not None:
+            self._files.follows = False
+            scene.look_at_path()
         if self._stream.opened != self._opened or self._stream.is_busy:
             return
         if not self._stream.is_open:

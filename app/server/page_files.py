@@ -116,6 +116,7 @@ class PageFiles:
 
     Attributes:
         delivery: brings files to the page.
+        follows: whether the robots have been given the path of another file since this was reset.
     """
 
     def __init__(self, post: Callable[[Command], object], code: str = "") -> None:
@@ -127,6 +128,7 @@ class PageFiles:
         self._arrived = deque[tuple[SendFile, bytes]]()
         self._news = deque[FileMessage]()
         self._language = "en"
+        self.follows = False
 
     def hear(self, message: FileRequest) -> FileMessage | None:
         """Take a message of the page; returns the answer. On the event loop."""
@@ -200,6 +202,7 @@ class PageFiles:
             found = read.found
             if isinstance(found, FollowCurve):
                 self._post(found)
+                self.follows |= not file.again
             self._news.append(_message(file, read, words))
 
         def refuse(reason: Exception | Message) -> None:

@@ -90,24 +90,26 @@ export function pathFromFile(texts: Texts, files: Files, chosen: ChosenFile, dro
         })))
         sheet.element.classList.toggle("followed", isFollowed)
     }
-    /** Draw the lines of the file. Each can be pressed. */
+    /** Draw the lines of the file. */
     const draw = () => {
         const { lines } = chosen, isOne = lines.length < 2
         part.label.hidden = isOne
         part.box.max = String(Math.max(lines.length, 1))
         part.box.valueAsNumber = chosen.part || 1
         picture.style.display = lines.length ? "" : "none"
-        picture.replaceChildren(...lines.flatMap((line, i) => {
-            const points = line.map((each, k) => (k % 2 ? SIZE - each : each)).join(" ")
-            const press = svg("polyline", { points, class: "press" })
-            press.addEventListener("click", () => {
-                if (isOne || isBusy) return
-                part.box.valueAsNumber = i + 1
-                void follow()
-            })
-            return [svg("polyline", { points, class: i + 1 === chosen.part ? "taken" : "" }), press]
-        }))
+        picture.classList.toggle("many", !isOne)
+        picture.replaceChildren(...lines.map((line, i) => svg("polyline", {
+            points: line.map((each, k) => (k % 2 ? SIZE - each : each)).join(" "), class: i + 1 === chosen.part ? "taken" : "",
+        })))
     }
+    picture.addEventListener("click", ({ clientX, clientY }) => {
+        if (isBusy || chosen.lines.length < 2) return
+        const { left, top, width, height } = picture.getBoundingClientRect()
+        const scale = (SIZE + 2 * MARGIN) / Math.min(width, height)
+        const at = [(clientX - left - width / 2) * scale + SIZE / 2, SIZE / 2 - (clientY - top - height / 2) * scale] as const
+        part.box.valueAsNumber = nearest(chosen.lines, at) + 1
+        void follow()
+    })
     const take = (file: File | undefined) => {
         if (!file || isBusy) return
         Object.assign(chosen, { file, lines: [], part: 0 })
@@ -139,6 +141,21 @@ export function pathFromFile(texts: Texts, files: Files, chosen: ChosenFile, dro
     sheet.open(choose)
     take(dropped)
     return sheet
+}
+
+/** Which line is the nearest to a point. */
+function nearest(lines: FileMessage["lines"], [x, y]: readonly [number, number]): number {
+    const away = lines.map(line => {
+        let least = Infinity
+        for (let i = 0; i + 1 < line.length; i += 2) {
+            const [ax, ay, bx, by] = [line[i]!, line[i + 1]!, line[i + 2] ?? line[i]!, line[i + 3] ?? line[i + 1]!]
+            const [dx, dy] = [bx - ax, by - ay], squared = dx * dx + dy * dy
+            const share = squared ? Math.min(Math.max(((x - ax) * dx + (y - ay) * dy) / squared, 0), 1) : 0
+            least = Math.min(least, Math.hypot(ax + share * dx - x, ay + share * dy - y))
+        }
+        return least
+    })
+    return away.indexOf(Math.min(...away))
 }
 
 /** A drawing in the clipboard, as a file: a copied file, or the text of one. */

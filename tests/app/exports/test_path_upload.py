@@ -222,10 +222,10 @@ def test_all_lines_are_shown_as_they_lie_in_the_file_and_any_can_be_taken() -> N
     assert isinstance(none.found, Message) and len(none.lines) == 3
 
 
-@pytest.mark.parametrize(("size", "sides"), [(0.03, 4), (0.04, 4), (0.05, 3), (0.06, 6)])
-def test_what_is_said_to_help_does(size: float, sides: int) -> None:
+@pytest.mark.parametrize(("size", "sides"), [(0.03, 4), (0.04, 4), (0.05, 3), (0.06, 6), (None, 5)])
+def test_what_is_said_to_help_does(size: float | None, sides: int) -> None:
     angles = np.linspace(0, 2 * np.pi, sides + 1) + 0.3
-    points = np.column_stack([np.cos(angles), np.sin(angles)])
+    points = 20 * np.column_stack([np.cos(angles), np.sin(angles)])
     content = "".join(
         f"G{min(i, 1)} X{x:.4f} Y{y:.4f}\n" for i, (x, y) in enumerate(points)
     ).encode()

@@ -296,6 +296,25 @@ def test_camera_shows_both_robots_below_the_margin(size, top, stage: Stage):
     assert widest > 0.8
 
 
+@pytest.mark.parametrize("size", [(1366, 768), (390, 844)])
+@pytest.mark.parametrize("name", STAGES)
+def test_a_path_that_is_seen_from_the_side_is_looked_at_from_above(
+    size: tuple[int, int], name: str
+) -> None:
+    stage, robot = STAGES[name], ROBOTS[name].make(ROBOTS[name].parameters())
+    angle = np.linspace(0, 2 * np.pi, 90)
+    circle = np.column_stack([np.cos(angle), np.sin(angle)])
+    path = robot.position(robot.frame.lift(0.04 * circle))
+    usual, pose = view_of(stage, size, 40), view_of(stage, size, 40, path)
+    shown = [in_picture(each, stage.origins[0] + path, size) for each in (usual, pose)]
+    heights, widths = ([float(np.ptp(each[i])) for each in shown] for i in (1, 0))
+    assert heights[1] > 0.6 * widths[1]
+    assert widths[1] >= widths[0] - 1 and heights[1] >= heights[0] - 1
+    for base in stage.origins:
+        x, y = in_picture(pose, base + path, size)
+        assert x.min() > 0 and x.max() < size[0] and y.min() > 38 and y.max() < size[1]
+
+
 @given(
     size=st.tuples(st.integers(300, 2600), st.integers(250, 1500)),
     name=st.sampled_from(list(STAGES)),

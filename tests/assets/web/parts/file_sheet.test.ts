@@ -105,10 +105,12 @@ test("each line of a file is shown, and the one that is pressed is taken, of the
     const sends = () => sent.filter((each): each is SendFile => each.is === "send")
     files.hear({ is: "file", number: sends()[0]!.number, state: "used", ...NOTHING, lines: LINES, part: 2 })
     await settled()
-    const shown = [...body.querySelectorAll("polyline:not(.press)")]
+    const shown = [...body.querySelectorAll("polyline")]
     assert.deepEqual(shown.map(line => line.getAttribute("class")), ["", "taken"])
     assert.equal(shown[0]!.getAttribute("points"), "0 1000 100 900")
-    body.querySelectorAll("polyline.press")[0]!.dispatchEvent(new Event("click"))
+    const picture = body.querySelector("svg.lines")!
+    picture.getBoundingClientRect = () => ({ left: 10, top: 20, width: 1280, height: 1080 }) as DOMRect
+    picture.dispatchEvent(new MouseEvent("click", { clientX: 10 + 100 + 40 + 90, clientY: 20 + 40 + 850 }))
     assert.equal(sends()[1]!.use.part, 1)
     assert.equal(sends()[1]!.again, sends()[0]!.number)
     sheet()!.remove()
