@@ -42,6 +42,7 @@ from onpath.models.arrays import Array
 from onpath.models.errors import Message
 from onpath.models.paths.frames import LevelPlane, Plane
 from onpath.models.systems.drawing import Depths, Drawing, Point, Spot
+from onpath.models.systems.forces import Grip
 from onpath.models.systems.parameter_specs import (
     model_error,
     number,
@@ -78,6 +79,7 @@ NEAR_LIMIT = 1 / 8  # of a joint's range, within which the regularity falls to 0
 UNLIMITED = 1e6  # [N m], for a motor whose limit the file does not state
 FASTEST_DECAY = 2500.0  # [1/s], of friction, which one Runge-Kutta step of 1 ms can follow
 MOST_STEPS = 2
+LIGHT = 1.5  # [kg], mean effective mass of an end-point up to which the usual grip holds it
 AT_END = 1e-3  # least 1 - s², beside and beyond the ends of a joint's travel
 POSTURE = ("posture_stiffness", "posture_damping", "limit_avoidance")
 """Gains of the posture, of which a chain has those that are among its parameters."""
@@ -315,10 +317,29 @@ def _spared(source: ChainSource, q: ca.SX) -> ca.SX:
 
 def _inertias_at_home(source: ChainSource) -> Array:
     """The diagonal of M at home, (n,)."""
+    return np.diag(_mass_at_home(source))
+
+
+def _mass_at_home(source: ChainSource) -> Array:
+    """M at home, (n, n)."""
     chain, one = source.chain, ca.SX(1)
     frames = chain_frames(chain, ca.SX(ca.DM(source.home)))
     mass = mass_matrix(chain, frames, chain_inertias(chain, one, ca.SX(0)), one)
-    return np.diag(ca.evalf(ca.densify(mass)).full())
+    return ca.evalf(ca.densify(mass)).full()
+
+
+def chain_grip(source: ChainSource, slope: Array) -> Grip:
+    """Hand, brake and wall, as much stronger as the end-point is heavier than `LIGHT`.
+
+    Its effective mass at home is Λ = (J M⁻¹ Jᵀ)⁻¹. The end-point of a control law with the gain K1
+    is as stiff as K1 Λ, so a heavy arm gives way to a spring as a light one does if the spring
+    grows with the mean eigenvalue of Λ.
+
+    Args:
+        slope: J at home, (p, n).
+    """
+    effective = 1 / np.linalg.eigvalsh(slope @ np.linalg.solve(_mass_at_home(source), slope.T))
+    return Grip().stronger(max(1.0, float(effective.mean()) / LIGHT), float(effective.min()))
 
 
 @lru_cache(maxsize=64)
@@ -367,6 +388,7 @@ def chain_robot(source: ChainSource) -> Robot:
     spread = ca.sqrt(ca.fmax(ca.det(ca.densify(jacobian @ jacobian.T)), 0))
     absolute = ca.Function("spread", [system.q], [spread])
     at_home = float(ca.evalf(absolute(ca.DM(source.home))))
+    slope = np.array(reached(ca.DM(source.home))[1])
     regularity = spread / at_home
     for i, joint in enumerate(chain.joints):
         if (width := joint.high - joint.low) < math.inf:
@@ -387,6 +409,7 @@ def chain_robot(source: ChainSource) -> Robot:
         ),
         frame=LevelPlane() if system.p == 3 else Plane(),
         drawing=_drawing(source),
+        grip=chain_grip(source, slope),
         substeps=source.substeps,
         chain=chain,
         radius=source.radius,

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import casadi as ca
 
 TINY = 1e-12  # [N²], keeps the square root differentiable at 0
+MOST_DAMPING = 500.0  # [1/s], of the least effective mass: forces are held over a tick of 1 ms
 DRY_VELOCITY = 0.05  # [rad/s], width of the smooth sign in Coulomb friction
 
 
@@ -24,6 +25,16 @@ class SpringLimits:
     damping: float
     largest: float
 
+    def stronger(self, factor: float, least: float) -> SpringLimits:
+        """The spring times a factor, with no more damping than a light direction can bear.
+
+        Args:
+            factor: at least 1.
+            least: the least effective mass of the end-point, over all directions, [kg].
+        """
+        damping = min(factor * self.damping, max(self.damping, MOST_DAMPING * least))
+        return SpringLimits(factor * self.stiffness, damping, factor * self.largest)
+
 
 @dataclass(frozen=True, slots=True)
 class Grip:
@@ -32,6 +43,13 @@ class Grip:
     hand: SpringLimits = SpringLimits(stiffness=300.0, damping=10.0, largest=15.0)
     hold: SpringLimits = SpringLimits(stiffness=2000.0, damping=40.0, largest=30.0)
     wall: SpringLimits = SpringLimits(stiffness=2000.0, damping=40.0, largest=30.0)
+
+    def stronger(self, factor: float, least: float) -> Grip:
+        """All springs times a factor; see `SpringLimits.stronger`."""
+        hand, hold, wall = (
+            spring.stronger(factor, least) for spring in (self.hand, self.hold, self.wall)
+        )
+        return Grip(hand=hand, hold=hold, wall=wall)
 
 
 def hand(y: ca.SX, y_rate: ca.SX, target: ca.SX, active: ca.SX, limits: SpringLimits) -> ca.SX:

@@ -11,7 +11,13 @@ import numpy as np
 from onpath.models.arrays import Array
 from onpath.models.paths.path_checks import LEAST_MARGIN
 from onpath.models.systems.drawing import Point
-from onpath.models.systems.rigid_chain import Chain, chain_frames, tip_of
+from onpath.models.systems.rigid_chain import (
+    Chain,
+    chain_frames,
+    chain_inertias,
+    potential_energy,
+    tip_of,
+)
 from onpath.models.systems.robots import Robot
 from onpath.models.systems.rows import Rows
 
@@ -20,6 +26,7 @@ OVER_FLOOR = 0.02  # [m], least height of joints and tip over the floor
 DOWN = 0.5  # weight of a tip that points downward, against one that points upward
 WORTH = 0.3  # a rule holds if the best pose within it has this share of the best score of all
 HANGS = 0.5  # share of its length by which the tip of a hanging limb is below its base
+LEAST_EASE = 0.05  # weight of a pose that the motors cannot hold
 CANDIDATES, APART = 6, 0.15
 MOST_SEEN = 400  # of the best configurations, among which candidates are chosen
 RADII = 60
@@ -49,7 +56,8 @@ def chosen_poses(chain: Chain, axes: tuple[Point, ...], pose: dict[str, float]) 
 
     Of `TRIES` random ones within the limits, and within half a turn from 0, they maximize σ_min(J)
     times the least distance from a limit, as a share of its joint's travel. A tip whose axis points
-    downward is preferred. They keep to rules: joints and end-point are over the floor, which is at
+    downward is preferred, and what the motors hold with half of the torques that the file states
+    for them. They keep to rules: joints and end-point are over the floor, which is at
     the root's origin, or at the first joint if that is lower, and the end-point is in front of the
     first joint. What no joint moves does not count. For a limb that hangs from its base, such as a
     leg, the first rule is that the end-point is below it. A rule that costs too much is given up.
@@ -67,7 +75,7 @@ def chosen_poses(chain: Chain, axes: tuple[Point, ...], pose: dict[str, float]) 
     slopes = values[:-1, : p * chain.n].reshape(-1, chain.n, p).transpose(0, 2, 1)
     least = np.linalg.svd(slopes, compute_uv=False)[:, -1]
     low, height, ahead, up = values[:-1, -4:].T
-    score = least * _room(chain, tried, pose) * (1 + DOWN * (1 - up) / 2)
+    score = least * _room(chain, tried, pose) * (1 + DOWN * (1 - up) / 2) * _ease(chain, tried)
     if not least.max() > LEAST_SLOPE * length:
         return []
     hangs = bool(values[-1, -3] < base[2] - HANGS * length)
@@ -128,6 +136,18 @@ def _room(chain: Chain, tried: Array, pose: dict[str, float]) -> Array:
     room = np.minimum(tried - low, high - tried) / (high - low)
     free = [i for i, joint in enumerate(chain.joints) if joint.name not in pose]
     return room[:, free].min(axis=1, initial=0.5)
+
+
+def _ease(chain: Chain, tried: Array) -> Array:
+    """1 where no motor needs more than half of its effort to hold the chain, least where all."""
+    efforts = np.array([joint.effort for joint in chain.joints])
+    if not np.isfinite(efforts).any():
+        return np.ones(len(tried))
+    q, one = ca.SX.sym("q", chain.n), ca.SX(1)
+    inertias = chain_inertias(chain, one, ca.SX(0))
+    weights = ca.gradient(potential_energy(chain_frames(chain, q), inertias), q)
+    loads = np.abs(Rows([q], ca.densify(weights))(tried)) / efforts
+    return np.clip(2 * (1 - loads.max(axis=1)), LEAST_EASE, 1.0)
 
 
 def _zero(chain: Chain, pose: dict[str, float]) -> Array:

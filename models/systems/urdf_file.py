@@ -426,9 +426,8 @@ def _joint(joint: Element, kind: str, armature: float) -> Joint:
     limit, dynamics = joint.first("limit"), joint.first("dynamics")
     low, high, effort = -math.inf, math.inf, math.inf
     if limit is not None:
-        effort = _end(limit, "effort") or math.inf
-        if effort < 0:
-            raise FileFault(limit, Message("robot_file.negative", {"field": "effort"}))
+        effort = _end(limit, "effort")
+        effort = effort if effort > 0 else math.inf  # exporters write 0 or -1 for "not known"
     if kind in ("revolute", *SLIDING) and limit is not None and not _without_limits(limit):
         low, high = _end(limit, "lower"), _end(limit, "upper")
         if low > high:

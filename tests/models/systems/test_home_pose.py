@@ -117,13 +117,25 @@ def test_what_is_no_arm_is_refused_in_one_sentence(
 @pytest.mark.thorough
 def test_motors_without_limits_are_said_to_be_unlimited(tmp_path: Path) -> None:
     text = urdf("arm", SEVEN)
-    none = text.replace('effort="', 'effort="0" old="')
+    none = text.replace('effort="', 'effort="-1" old="')
     some = text.replace('effort="5"', 'effort="0"')
     for data, code in ((none, "guessed_efforts"), (some, "guessed_effort"), (text, "")):
         found = read(tmp_path, SEVEN, data)
         codes = [g.message.code for g in found.guesses if g.kind == "effort"]
         assert codes == ([f"robot_file.{code}"] if code else [])
         assert found.entry.source is not None and found.entry.source.guesses == found.guesses
+
+
+def test_a_pose_is_chosen_that_the_motors_can_hold(tmp_path: Path) -> None:
+    """Shoulders that cannot hold the arm stretched out give half of their torque at most."""
+    weak = tuple(
+        replace(each, effort=6.0 if i < 2 else each.effort) for i, each in enumerate(SEVEN)
+    )
+    entry = read(tmp_path, weak).entry
+    robot, parameters = entry.make(entry.parameters()), entry.parameters()
+    rest, bias = robot.rest(np.zeros(3)), robot.system.function("bias")
+    held = np.array(bias(rest, np.zeros(7), robot.plant(parameters)))[:, 0]
+    assert (np.abs(held) <= [0.5 * each.effort for each in weak]).all()
 
 
 def test_the_same_file_has_the_same_pose(tmp_path: Path) -> None:
@@ -193,6 +205,10 @@ def test_a_file_without_an_arm_or_leg_says_what_it_is(tmp_path: Path, code: str,
     with pytest.raises(CodedError) as caught:
         read(tmp_path, (), text)
     assert caught.value.message.code == f"robot_file.{code}"
+
+
+def test_an_abdomen_in_the_middle_is_no_finger(tmp_path: Path) -> None:
+    assert read(tmp_path, (), tree("pelvis", 1, 12, "middle_abdomen")).circle > 0
 
 
 def test_the_legs_of_a_trunk_are_no_fingers(tmp_path: Path) -> None:

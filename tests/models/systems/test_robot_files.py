@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -20,10 +20,12 @@ from onpath.models.closed_loop.simulation import (
     kind_of,
     settings_vector,
 )
+from onpath.models.closed_loop.trajectory import Trajectory
 from onpath.models.closed_loop.translated_loop import translate_loop
 from onpath.models.control.settable import with_values
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curves import circle
+from onpath.models.studies.experiments import on_path, run
 from onpath.models.systems.contract import faults_of
 from onpath.models.systems.file_chain import Options
 from onpath.models.systems.robot_file import read_robot
@@ -51,6 +53,7 @@ TEXTS = {
     "random": random_arm(4),
 }
 """A planar arm, a spatial one, and one with rotated frames and inertias and a sliding joint."""
+MORE = (1, 2, 3, 5, 6, 8, 9)  # seeds of others like the last one: ten in all
 
 
 @pytest.fixture(scope="module", params=TEXTS)
@@ -156,6 +159,15 @@ def test_a_closed_loop_runs_as_with_mujoco_as_the_plant(arm: Arm, law: str) -> N
 
 
 @pytest.mark.thorough
+@pytest.mark.parametrize("seed", MORE)
+def test_other_arms_are_and_run_as_with_mujoco(tmp_path: Path, seed: int) -> None:
+    file = written(tmp_path, random_arm(seed))
+    other = Arm(file, read_robot(file, Options()).entry)
+    test_equations_are_those_of_mujoco(other)
+    test_a_closed_loop_runs_as_with_mujoco_as_the_plant(other, "path_following")
+
+
+@pytest.mark.thorough
 def test_compiled_and_interpreted_loops_agree_bit_by_bit(arm: Arm) -> None:
     parameters = with_values(arm.entry.parameters(), {"torque_limit": 30.0, "coulomb": 0.1})
     robot, curve = arm.entry.make(parameters), circle(RADIUS)
@@ -239,6 +251,30 @@ def test_each_motor_gives_no_more_than_the_share_of_its_own_limit(tmp_path: Path
 
 
 @pytest.mark.thorough
+@pytest.mark.thorough
+def test_a_heavy_arm_is_held_as_a_light_one(tmp_path: Path) -> None:
+    """Twice the masses, rotors and friction: the same motion, held back by twice the force."""
+    moved = list[Trajectory]()
+    for factor in (5.0, 10.0):
+        links = [
+            replace(
+                each,
+                mass=factor * each.mass,
+                rotor=factor * each.rotor,
+                damping=factor * each.damping,
+                effort=factor * each.effort,
+            )
+            for each in SEVEN
+        ]
+        entry = read_robot(written(tmp_path, urdf("arm", links)), Options()).entry
+        experiment = on_path(entry, entry.parameters(), circle(RADIUS))
+        times = {"duration": 3.0, "hold_from": 1.0, "hold_to": 2.0}
+        moved.append(run(experiment.with_values(times), "trajectory_tracking"))
+    one, other = moved
+    assert one.held.any() and one.distance[one.held].max() > 0.02
+    assert np.abs(one.fields["q"] - other.fields["q"]).max() < 1e-3
+
+
 def test_without_a_posture_the_arm_falls_to_a_limit_while_its_tip_stays(tmp_path: Path) -> None:
     """η1 of (5): with gains no joint does; without them one does; the tip stays on its path."""
     file = written(tmp_path, urdf("seven", SEVEN))
