@@ -9,6 +9,7 @@ from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
 LARGEST_MESH = 20_000_000  # [B]
+LARGEST_PACKAGE = 100_000  # characters of a package.xml
 LEVELS = 5  # above a file, at which its package may be
 _FIND = re.compile(r"(?:file://)?\$\(find ([^)]+)\)/*(.*)", re.DOTALL)
 
@@ -55,9 +56,13 @@ class MeshFolders:
             return None
 
     def folder(self, package: str) -> Path | None:
-        """The folder of a package; None if it is not known."""
+        """The folder of a package; None if it is not known.
+
+        The file's own package, whose folder may have another name, is called as it says itself.
+        """
         given = self._packages.get(package)
-        return given or next(iter(self._named(f"package://{package}/")), None)
+        named = self._named(f"package://{package}/")
+        return given or next((f for f in named if f.name == package or _says(f, package)), None)
 
     def is_missing(self, address: str) -> bool:
         """Whether a mesh is in a package of `missing`."""
@@ -103,6 +108,16 @@ def _package_in(address: str) -> tuple[str, str] | None:
         return None
     name, _, within = rest.lstrip("/").partition("/")
     return unquote(name), unquote(within).lstrip("/")
+
+
+def _says(folder: Path, package: str) -> bool:
+    """Whether a folder's package.xml says that this is the package's name."""
+    path = (folder / "package.xml").resolve()
+    if not path.is_file() or not path.is_relative_to(folder):
+        return False
+    with path.open(encoding="utf-8", errors="replace") as file:
+        text = file.read(LARGEST_PACKAGE)
+    return re.search(rf"<name>\s*{re.escape(package)}\s*</name>", text) is not None
 
 
 def _is_home(folder: Path) -> bool:

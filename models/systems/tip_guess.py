@@ -17,6 +17,7 @@ MOST_TIPS = 5  # that are suggested
 LEAST_JOINTS = 3  # on the way to an arm's tip
 PALM_JOINTS = 3  # least number before a link from which fingers branch off
 FINGER_JOINTS = 4  # most of a finger
+DRIVEN_JOINTS = 8  # most of a finger with those that follow others
 HAND_FINGERS = 3  # least number on a hand
 ARM, OTHER, LEG, HEAD = range(4)  # limbs, the likeliest to have the tip first
 NAMED = 2  # joints that a name of a tool counts for
@@ -203,7 +204,11 @@ class _TipTree:
 
     def _is_finger(self, i: int) -> bool:
         place = self._places[i]
-        if place.follows or _like_finger(place.name):
+        if place.follows:
+            return True
+        if self._behind(i) > DRIVEN_JOINTS:  # such as an abdomen in the middle
+            return False
+        if _like_finger(place.name):
             return True
         words = {word for name in (place.name, *place.joints) for word in _words(name)}
         opens = bool(words & _GRIPPERS) and not words & _TURNS

@@ -206,6 +206,21 @@ def test_a_xacro_file_includes_nothing_from_elsewhere(tmp_path: Path) -> None:
             assert error.reason.arguments["name"] == "robot"
 
 
+def test_a_missing_package_of_a_xacro_file_is_named(tmp_path: Path) -> None:
+    """Its own package is found by the name in its package.xml, whatever its folder is called."""
+    pytest.importorskip("xacro")
+    (tmp_path / "package.xml").write_text("<package><name>arm_support</name></package>")
+    part = ARM[ARM.index("<link") :]
+    (tmp_path / "part.xacro").write_text(HEAD + part)
+    file = tmp_path / "arm.xacro"
+    include = '<xacro:include filename="$(find {})/part.xacro"/></robot>'
+    file.write_text(HEAD + include.replace("{}", "arm_support"))
+    assert read_file(file, Options())[0].chain.n == 3
+    file.write_text(HEAD + include.replace("{}", "arm_resources"))
+    with pytest.raises(CodedError, match="--package arm_resources=FOLDER"):
+        read_file(file, Options())
+
+
 FORBIDDEN = {
     "network": "import socket; socket.socket()",
     "programs": "import os; os.system('true')",
