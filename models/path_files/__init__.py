@@ -1,1 +1,1 @@
-"""Paths from files that other programs wrote: points, SVG drawings, G-code."""
+"""Paths from files that other programs wrote: points, signatures, SVG drawings, G-code."""

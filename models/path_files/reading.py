@@ -26,9 +26,10 @@ from onpath.models.path_files.placing import (
     least_radius,
     placed,
 )
+from onpath.models.path_files.signature import is_signature, strokes_of_signature
 from onpath.models.path_files.stroke import UNITS, LineDrawing, Stroke, text_of
 from onpath.models.path_files.svg import strokes_of_svg
-from onpath.models.path_files.table import stroke_of_table
+from onpath.models.path_files.table import strokes_of_table
 from onpath.models.paths.curve_fit import deviation_remark, distinct
 from onpath.models.paths.curves import Curve
 from onpath.models.studies.path_text import LONGEST_TEXT, curve_from_text, is_described
@@ -142,7 +143,7 @@ def _head(data: bytes, most: int) -> str:
 
 
 def _is_described(data: bytes, head: str) -> bool:
-    return len(data) <= 4 * LONGEST_TEXT and is_described(head)
+    return len(data) <= 4 * LONGEST_TEXT and is_described(head) and not is_signature(head)
 
 
 def path_through(points: Array, placing: Placing) -> ImportedPath:
@@ -227,6 +228,11 @@ def _strokes(
     data: bytes, name: str, head: str, unit: str | None, layer: str | None
 ) -> tuple[Sequence[Stroke], list[Message]]:
     """The lines of a file, and remarks on what was left out."""
+    if is_signature(head):
+        strokes = strokes_of_signature(text_of(data, encoding_of(data[:4])))
+        if not strokes:
+            raise CodedError("error.file_no_line")
+        return _in_units(strokes, unit, UNITS["px"]), []
     if name.lower().endswith(".svg") or head.lstrip("\ufeff \t\r\n").startswith("<"):
         strokes, remarks = strokes_of_svg(data, layer)
         usual = UNITS["px"]
@@ -235,7 +241,7 @@ def _strokes(
         strokes, remarks = strokes_of_gcode(text, layer)
         usual = UNITS["mm"]
     else:
-        return [stroke_of_table(data, unit)], []
+        return strokes_of_table(data, unit), []
     if not strokes:
         raise CodedError("error.file_no_line")
     lines = joined(_in_units(strokes, unit, usual))

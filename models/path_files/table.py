@@ -2,7 +2,11 @@
 
 Two columns, or those that a line of names calls x and y, z1 and z2, or y1 and y2; other columns may
 be there. A name may state the unit: `x_mm`, `x [mm]`, `x (mm)`, `x in mm`. The columns may also be
-separated by spaces. See `models/studies/table_file.py` for the rest.
+separated by spaces.
+
+An empty row ends a line, unless each row has one after it, and so does another number in a column
+called stroke, part, segment or pen, or in a third one without a name; of 0 and 1, a pen is down at
+1. See `models/studies/table_file.py` for the rest.
 """
 
 from __future__ import annotations
@@ -10,11 +14,13 @@ from __future__ import annotations
 import io
 import re
 from collections.abc import Iterator, Sequence
-from itertools import chain
+from itertools import chain, groupby
+from operator import itemgetter
 
 import numpy as np
 
 from onpath.models.errors import CodedError
+from onpath.models.path_files.joining import TOUCHING
 from onpath.models.path_files.stroke import UNITS, Stroke, check_count
 from onpath.models.studies.table_file import (
     DECLARED,
@@ -28,13 +34,16 @@ from onpath.models.studies.table_file import (
 
 PAIRS = (("x", "y"), ("z1", "z2"), ("y1", "y2"), ("y2", "y3"))
 """Names of the columns of a point, the first ones that a table has."""
+PENS = ("stroke", "pen", "pen_down", "part", "segment")
+"""Names of a column that numbers the lines, or is 1 where the pen is down and else 0."""
 _U = "(mm|cm|m|in)"
 _NAME = re.compile(rf"([a-z]+\d?)(?:_{_U}|\s+in\s+{_U}|\s*/\s*{_U}|\s*[\[(]\s*{_U}\s*[\])])?")
 Row = tuple[int, list[str]]
+Point = tuple[float, float]
 
 
-def stroke_of_table(data: bytes, unit: str | None) -> Stroke:
-    """The points of a table.
+def strokes_of_table(data: bytes, unit: str | None) -> list[Stroke]:
+    """The points of a table, in lines.
 
     Args:
         unit: of its numbers; None: the one that the columns' names state, else metres.
@@ -46,19 +55,34 @@ def stroke_of_table(data: bytes, unit: str | None) -> Stroke:
         io.BytesIO(data), encoding_of(data[:4]), errors="replace", newline=None
     ) as file:
         rows = _rows(file)
-        first = next(rows, (1, list[str]()))
+        first = next((row for row in rows if row[1]), (1, list[str]()))
         names = [] if _numeric(first[1]) else first[1]
         places, stated = _columns(names, first) if names else ((0, 1), None)
-        points = _points(rows if names else chain([first], rows), places, names)
-    if not len(points):
+        groups = _groups(rows if names else chain([first], rows), places, names)
+    if not groups:
         raise CodedError("error.table_empty", line=str(first[0]))
-    return Stroke(UNITS[unit or stated or "m"] * points, closed=None, straight=False)
+    points = [UNITS[unit or stated or "m"] * np.array(group) for group in groups]
+    if len(points) == 1:
+        return [Stroke(points[0], closed=None, straight=False)]
+    size = float(np.ptp(np.vstack(points), axis=0).max())
+    return [
+        Stroke(
+            each,
+            closed=len(each) > 3 and bool(np.linalg.norm(each[0] - each[-1]) <= TOUCHING * size),
+            straight=False,
+            name=f"stroke {number}",
+        )
+        for number, each in enumerate(points, start=1)
+    ]
 
 
 def _rows(file: io.TextIOWrapper) -> Iterator[Row]:
-    """Number and cells of the lines that have any."""
+    """Number and cells of the lines; none of an empty one."""
     separator = ""
-    for number, line in lines_of(file):
+    for number, line in lines_of(file, empty=True):
+        if not line:
+            yield number, []
+            continue
         if not separator:
             if declared := DECLARED.fullmatch(line):
                 separator = declared["separator"]
@@ -70,8 +94,7 @@ def _rows(file: io.TextIOWrapper) -> Iterator[Row]:
         cells = line.split() if separator == " " else cells_of(line, separator, number)
         while cells and not cells[-1]:
             cells.pop()
-        if cells:
-            yield number, cells
+        yield number, cells
 
 
 def _separator(line: str) -> str:
@@ -122,19 +145,63 @@ def _name_and_unit(text: str) -> tuple[str, str | None]:
     return name, next((unit for unit in units if unit), None)
 
 
-def _points(rows: Iterator[Row], places: tuple[int, int], names: list[str]) -> np.ndarray:
-    reader, points, width = NumberReader(), list[tuple[float, float]](), len(names)
+def _groups(rows: Iterator[Row], places: tuple[int, int], names: list[str]) -> list[list[Point]]:
+    """The points of each line."""
+    reader, points, width = NumberReader(), list[Point](), len(names)
+    pens, blocks, block = list[float](), list[int](), 0
+    which = _pen(names)
     for number, cells in rows:
+        if not cells:
+            block += 1
+            continue
         if not width:
             width = len(cells)
-            if width != 2:
+            if width not in (2, 3):
                 raise CodedError("error.points_columns", line=str(number), count=width)
+            which = 2 if width == 3 else None
         if len(cells) != width:
             wanted, got = str(width), str(len(cells))
             raise CodedError("error.table_cells", line=str(number), wanted=wanted, count=got)
-        first, second = (
-            reader.number(cells[i], number, names[i] if names else str(i + 1)) for i in places
-        )
-        points.append((first, second))
+        values = [
+            reader.number(cells[i], number, names[i] if names else str(i + 1))
+            for i in (*places, *([] if which is None else [which]))
+        ]
+        points.append((values[0], values[1]))
+        pens += values[2:]
+        blocks.append(block)
         check_count(len(points), number)
-    return np.array(points, dtype=float).reshape(-1, 2)
+    if which is not None and not names and not _are_pens(pens):
+        raise CodedError("error.points_columns", line="1", count=width)
+    if which is not None and {*pens} == {0.0, 1.0} and (not names or "pen" in names[which].lower()):
+        return _lowered(points, pens)
+    marks = [*zip(pens or [0.0] * len(points), blocks, strict=True)]
+    groups = [
+        [point for _, point in part]
+        for _, part in groupby(zip(marks, points, strict=True), key=itemgetter(0))
+    ]
+    if all(len(group) == 1 for group in groups):  # of lines in double spacing
+        return [points] if points else []
+    return [group for group in groups if len(group) > 1]
+
+
+def _pen(names: list[str]) -> int | None:
+    """The column that numbers the lines, or says whether the pen is down; None if there is none."""
+    plain = [_name_and_unit(name.lower())[0] for name in names]
+    return next((plain.index(name) for name in PENS if name in plain), None)
+
+
+def _are_pens(values: list[float]) -> bool:
+    """Whether numbers in a column without a name number lines: whole, and few."""
+    return all(value.is_integer() for value in values) and 2 * len({*values}) <= len(values)
+
+
+def _lowered(points: list[Point], pens: list[float]) -> list[list[Point]]:
+    """The lines that are drawn to points where the pen is down, each from the point before."""
+    groups, down = list[list[Point]](), False
+    for i, (point, pen) in enumerate(zip(points, pens, strict=True)):
+        if pen and not down:
+            groups.append(points[i - 1 : i] if i else [])
+        down = bool(pen)
+        if down:
+            groups[-1].append(point)
+    return [group for group in groups if len(group) > 1]

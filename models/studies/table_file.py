@@ -92,8 +92,12 @@ def encoding_of(head: bytes) -> str:
     return "utf-8-sig"
 
 
-def lines_of(file: io.TextIOWrapper) -> Iterator[tuple[int, str]]:
-    """Number and text of the lines that are neither empty nor a comment."""
+def lines_of(file: io.TextIOWrapper, *, empty: bool = False) -> Iterator[tuple[int, str]]:
+    """Number and text of the lines that are neither empty nor a comment.
+
+    Args:
+        empty: whether empty lines are there, too.
+    """
     for number, line in enumerate(iter(lambda: file.readline(LONGEST_LINE), ""), start=1):
         if len(line) >= LONGEST_LINE:
             raise CodedError("error.table_long_line", line=str(number), most=str(LONGEST_LINE))
@@ -101,6 +105,8 @@ def lines_of(file: io.TextIOWrapper) -> Iterator[tuple[int, str]]:
             raise CodedError("error.table_long", most=str(MOST_LINES))
         if line.strip(f'{SEPARATORS}" \r\n') and not _COMMENT.match(line):
             yield number, line.rstrip("\n")
+        elif empty and not _COMMENT.match(line):
+            yield number, ""
 
 
 def _read(

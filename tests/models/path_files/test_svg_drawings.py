@@ -245,6 +245,7 @@ HOSTILE = {
 }
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("case", HOSTILE)
 def test_a_hostile_drawing_is_refused_in_words_and_soon(case: str) -> None:
     text, words = HOSTILE[case]
