@@ -560,7 +560,7 @@ laws-own_left = Eigenes Gesetz links
 laws-own_right = Eigenes Gesetz rechts
 laws-own_hint = Die Eingabetaste setzt das Gesetz ein; mit der Umschalttaste beginnt sie eine neue Zeile
 laws-about = Über die Regelgesetze
-laws-bounds = Das Integral jedes Gesetzes ist begrenzt: K3 verschiebt das Gleichgewicht um höchstens { $reach } mm, sodass keine Hand es aufziehen kann. Gesetze, die der Bahn über ihren nächsten Punkt folgen, kehren dort, wo auf diesen Punkt kein Verlass ist, allein mit K1 und K2 geradewegs zurück: ab dem halben Krümmungsradius auf der Innenseite, ganz ab vier Fünfteln, wo sie sich von der Messung bis zum Drehmoment um 0,15 bis 0,3 rad mehr drehen als gewünscht, und 5 bis 20 mm jenseits eines offenen Endes.
+laws-bounds = Das Integral jedes Gesetzes ist begrenzt: K3 verschiebt das Gleichgewicht um höchstens { $reach } mm und in einer Biegung um ihren halben Radius, sodass keine Hand es aufziehen kann. Gesetze, die der Bahn über ihren nächsten Punkt folgen, kehren dort, wo auf diesen Punkt kein Verlass ist, allein mit K1 und K2 geradewegs zurück: ab dem halben Krümmungsradius auf der Innenseite, ganz ab vier Fünfteln, wo er oder die Richtung der Bahn sich von der Messung bis zum Drehmoment um 0,15 bis 0,3 rad mehr dreht als gewünscht, und 5 bis 20 mm jenseits eines offenen Endes.
 laws-source = Quelle: { $source }
 laws-own_text = Eine Zeile across = … gibt die Beschleunigung quer zur Bahn in m/s² vor, eine Zeile along = … die längs der Bahn in rad/s²; oder u1 = …, u2 = … geben die Drehmomente aller Motoren in N m vor.
 laws-own_space = Bei einem Roboter, der sich im Raum bewegt, ist across2 = … die Beschleunigung längs der zweiten Normalen.

@@ -51,7 +51,8 @@ from onpath.models.paths.projection import basis, spline_basis, window, windowed
 from onpath.models.systems import forces
 from onpath.models.systems.system import MechanicalSystem
 
-INTEGRAL_REACH = 0.01  # ρ, [m]
+INTEGRAL_REACH = 0.01  # largest ρ, [m]
+STRAIGHT = 1e-9  # turn per radian of θ, below which a path does not bend
 DEFAULT_GRIP = forces.Grip()
 
 
@@ -244,7 +245,7 @@ def _advance(
         **moved,
         **estimate,
         **_next_places(kind, law, state, settings, view, command),
-        "integral": bounded(summed, settings, command),
+        "integral": bounded(summed, settings, view, command),
         **remembered(kind, state, acts, reading, measured_v[: system.joints]),
         **memory,
         **{n: ca.if_else(acts, command.memory[n], state[n]) for n, _ in law.memory},
@@ -254,7 +255,7 @@ def _advance(
     output = measured_output(system, plane, kind, state, settings, values[:, 0], measured)
     row = {**state, "speed_ref": wanted_speed(state, settings)[0], "y": tip}
     row |= {"u": drive.mean, "force": force} | logged(output)
-    row |= {"far": command.far, "integral_used": integral_used(state, settings, command)}
+    row |= {"far": command.far, "integral_used": integral_used(state, settings, view, command)}
     later = kept_layout(system, kind, law.memory).join(after)
     outputs = [later, log_layout(system).join(row), *bases.call([later, settings_symbol])]
     return ca.Function("advance", [state_symbol, settings_symbol, values], ca.cse(outputs))
@@ -333,20 +334,23 @@ def _integral(
     return on * (state["integral"] + weight * command.error)
 
 
-def bounded(integral: ca.SX, settings: Fields, command: ControlAction) -> ca.SX:
+def bounded(integral: ca.SX, settings: Fields, view: View, command: ControlAction) -> ca.SX:
     """The integral, shortened so that |K3 ∫e dt| <= K1 ρ: it moves the balance by ρ at most.
+
+    ρ is 10 mm, or half the radius of curvature at the closest point if that is less: the arm would
+    stay inside of a bend otherwise.
 
     Otherwise a robot that a hand holds off its path would learn to push with the hand's force,
     which would throw it to the other side when the hand lets go.
     """
-    size, most = _size_of_integral(integral, settings), _most_of_integral(settings, command)
+    size, most = _size_of_integral(integral, settings), _most_of_integral(settings, view, command)
     return integral * ca.if_else(size > most, most / size, 1)
 
 
-def integral_used(state: Fields, settings: Fields, command: ControlAction) -> ca.SX:
+def integral_used(state: Fields, settings: Fields, view: View, command: ControlAction) -> ca.SX:
     """The share of its bound that the integral takes, from 0 to 1; see `bounded`."""
     size = _size_of_integral(state["integral"], settings)
-    most = _most_of_integral(settings, command)
+    most = _most_of_integral(settings, view, command)
     return ca.if_else(most > 0, ca.fmin(size / most, 1), 0)
 
 
@@ -355,9 +359,11 @@ def _size_of_integral(integral: ca.SX, settings: Fields) -> ca.SX:
     return settings["K3"] * ca.sqrt(ca.dot(integral, integral))
 
 
-def _most_of_integral(settings: Fields, command: ControlAction) -> ca.SX:
+def _most_of_integral(settings: Fields, view: View, command: ControlAction) -> ca.SX:
     """K1 ρ, (1, 1), in units of e per s²."""
-    return settings["K1"] * INTEGRAL_REACH * command.error_per_metre
+    closest = view.closest
+    half = ca.norm_2(closest.first) / (2 * ca.fmax(closest.turning, STRAIGHT))
+    return settings["K1"] * ca.fmin(INTEGRAL_REACH, half) * command.error_per_metre
 
 
 def _next_places(

@@ -14,6 +14,7 @@ from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loop_vectors import GAINS, LoopLayouts
 from onpath.models.closed_loop.speed_profile import Leg
 from onpath.models.control import composite_control
+from onpath.models.control.bend_limit import bend_limit
 from onpath.models.control.implicit_level import check_level, implicit_level
 from onpath.models.control.laws.law import PLAN
 from onpath.models.control.laws.own import is_text
@@ -174,7 +175,7 @@ def settings_vector(
             "tracker_integral": float(parameters.tracker_integral == "on"),
             "position": float(parameters.task == "position"),
             "target": parameters.target,
-            "speed": parameters.speed,
+            "speed": speed_on(parameters, curve),
             "ramp": parameters.ramp,
             "speed_limit": _speed_limit(robot, parameters, curve),
             "plane": robot.frame.numbers,
@@ -201,6 +202,14 @@ def settings_vector(
             "model": robot.model(parameters),
         }
     )
+
+
+def speed_on(parameters: Parameters, curve: Curve) -> float:
+    """The wanted speed of θ, slowed on a drawing to what its bends allow, [rad/s]."""
+    if not isinstance(curve, SplineCurve):
+        return parameters.speed
+    limit = bend_limit(parameters, curve)
+    return min(max(parameters.speed, -limit), limit)
 
 
 def _plan(robot: Robot, law: str, parameters: Parameters, curve: Curve) -> Array:

@@ -131,6 +131,13 @@ class LocalCurve:
             third=curved * third,
         )
 
+    @property
+    def turning(self) -> ca.SX:
+        """κ |σ'| >= 0, by which the tangent turns per radian of θ; 1 on a circle."""
+        first, second = self.first, self.second
+        turned = ca.dot(first, second) / ca.dot(first, first)
+        return ca.norm_2(second - turned * first) / ca.norm_2(first)
+
     def moved(self, step: ca.SX) -> LocalCurve:
         """The same polynomial expanded about θ_0 + step."""
         half, bend = step / 2, step * self.third

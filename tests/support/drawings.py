@@ -7,6 +7,7 @@ from scipy.interpolate import BSpline, CubicSpline
 
 from onpath.models.arrays import Array
 from onpath.models.paths.spline_curves import DEGREE, SplineCurve
+from onpath.models.paths.spline_fit import spline_through
 
 
 def random_drawing(
@@ -30,6 +31,13 @@ def random_drawing(
     )
     time = np.concatenate([[0.0], np.cumsum((slowness[1:] + slowness[:-1]) / 2)])
     return through(time / time[-1], line(u), pieces, closed)
+
+
+def scrawl(seed: int) -> SplineCurve:
+    """A random line of some 400 mm as the product fits it, for robots that can follow it."""
+    corners = 0.05 * np.random.default_rng(seed).uniform(-1, 1, (9, 2))
+    line = CubicSpline(np.arange(9), corners)(np.linspace(0, 8, 800))
+    return spline_through([line], False)
 
 
 def through(time: Array, z: Array, pieces: int, closed: bool) -> SplineCurve:

@@ -26,8 +26,9 @@ def path_following(view: View) -> ControlAction:
     `VirtualOutput.acceleration` turns (v_par, v_perp) into y''.
 
     This is the paper's law within two bounds: the integral of every law is limited,
-    |K3 ∫λ dt| <= K1 ρ with ρ = 10 mm (`bounded` in models/closed_loop/kernel.py), and far from the
-    path the command becomes a straight return (`far_from_path`).
+    |K3 ∫λ dt| <= K1 ρ with ρ = 10 mm or half the radius of the bend (`bounded` in
+    models/closed_loop/kernel.py), and far from the path the command becomes a straight return
+    (`far_from_path`).
 
     Source: eqs. (16), (18), (19).
     """
@@ -72,10 +73,11 @@ def far_from_path(view: View, wanted: ca.SX) -> ca.SX:
 
     (16) divides by 1 - λκ, which is 0 at the centre of curvature, where the closest point is not
     unique; a hand that lets go may throw the arm there. And (16) cancels θ'² as it was up to a time
-    `lag` ago, during which θ must not turn far. So s goes smoothly from 0 to 1 while
+    `lag` ago, during which neither θ nor the tangent may turn far: by (|θ'| - wanted) lag, times
+    κ |σ'| where that exceeds 1, as in bends. So s goes smoothly from 0 to 1 while
 
         1 - λκ                     falls from 0.5 to 0.2, or
-        (|θ'| - wanted) lag        rises from 0.15 to 0.3 rad, or
+        the turn beyond the wanted rises from 0.15 to 0.3 rad, or
         the way past an open end   rises from 5 to 20 mm, where σ is the end.
 
     With a level set it also does so where ∇s·N falls to such a share of its value on the path: at
@@ -89,7 +91,7 @@ def far_from_path(view: View, wanted: ca.SX) -> ca.SX:
         wanted: how fast θ is to turn, [rad/s].
     """
     output = view.output
-    turn = (ca.fabs(output.theta_rate) - wanted) * view.lag
+    turn = (ca.fabs(output.theta_rate) - wanted) * view.lag * ca.fmax(view.closest.turning, 1)
     inside = _risen((NEAR_SPREAD - output.spread) / (NEAR_SPREAD - FAR_SPREAD))
     fast = _risen((turn - NEAR_TURN) / (FAR_TURN - NEAR_TURN))
     share = ca.fmax(inside, fast)

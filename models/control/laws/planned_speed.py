@@ -17,13 +17,17 @@ from onpath.models.control.fastest_speed import (
 from onpath.models.control.laws.law import PathReference
 from onpath.models.control.speed_limit import NO_SPEED_LIMIT
 from onpath.models.paths.curves import Curve
+from onpath.models.paths.spline_curves import SplineCurve
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
 
 
 def speed_plan(robot: Robot, parameters: Parameters, curve: Curve) -> Array:
-    """1 and the coefficients of `fastest_speed`; nothing if the torques have no limit."""
-    if parameters.torque_limit == 0:
+    """1 and the coefficients of `fastest_speed`; nothing if the torques have no limit.
+
+    Nor is there any on a drawing, which has more bends than the polynomial has coefficients.
+    """
+    if parameters.torque_limit == 0 or isinstance(curve, SplineCurve):
         return np.zeros(0)
     model, backwards = tuple(robot.model(parameters).tolist()), parameters.speed < 0
     found = fastest_speed(robot, model, curve, parameters.torque_limit, backwards)

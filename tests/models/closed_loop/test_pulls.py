@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from onpath.models.closed_loop.faults import explained, fault_in
 from onpath.models.closed_loop.kernel import INTEGRAL_REACH
-from onpath.models.closed_loop.simulation import kind_of
+from onpath.models.closed_loop.simulation import Push, kind_of
 from onpath.models.control.laws.path_following import far_from_path
 from onpath.models.paths.curves import circle, ellipse
 from onpath.models.paths.distance import path_distance
@@ -124,15 +124,16 @@ def test_a_stop_beyond_the_torques_of_the_file_says_so() -> None:
     st.floats(-500, 500),
     st.floats(-20, 20),
     st.sampled_from([1e-3, 4e-3, 1e-2, 2.5e-2]),
+    st.floats(0, 50),
 )
 def test_the_return_takes_over_far_from_the_path_and_nowhere_else(
-    spread: float, rate: float, wanted: float, lag: float
+    spread: float, rate: float, wanted: float, lag: float, turning: float
 ) -> None:
     output = SimpleNamespace(spread=ca.SX(spread), theta_rate=ca.SX(rate))
-    clock = SimpleNamespace(closed=True)
-    view = SimpleNamespace(output=output, clock=clock, lag=ca.SX(lag))
+    clock, closest = SimpleNamespace(closed=True), SimpleNamespace(turning=ca.SX(turning))
+    view = SimpleNamespace(output=output, clock=clock, closest=closest, lag=ca.SX(lag))
     share = float(far_from_path(view, ca.SX(abs(wanted))))  # type: ignore[arg-type]
-    turn = (abs(rate) - abs(wanted)) * lag
+    turn = (abs(rate) - abs(wanted)) * lag * max(1.0, turning)
     assert 0 <= share <= 1
     if spread >= 0.5 and turn <= 0.15:
         assert share == 0  # the law as printed, bit by bit
@@ -197,3 +198,19 @@ def test_no_integral_moves_the_balance_by_more_than_its_bound(law: str) -> None:
         assert used.min() >= 0 and used.max() <= 1
         full |= bool((used > 0.999).any())
     assert full
+
+
+@pytest.mark.parametrize("radius", [1e-3, 2e-3])
+def test_a_small_circle_is_followed_again_after_a_pull(radius: float) -> None:
+    """The integral, bounded by half the radius, does not hold the arm inside of it."""
+    parameters, curve = parameters_of("five_bar"), circle(radius)
+    robot = ROBOTS["five_bar"].make(parameters)
+    loop = pulls.loop_of(robot, kind_of(FOLLOWER, parameters, curve))
+    state = pulls.first_state(robot, loop.layouts, curve, pulls.begin_at(robot, curve, 0.0))
+    free = pulls.settings_vector(robot, loop.layouts, parameters, curve, pulls.FREE)
+    hand = pulls.pushed(loop.layouts, free, Push(hand=np.array([0.02, 0.01])))
+    for own, ticks in ((hand, 1000), (free, 1500), (free, 1000)):
+        (state,), (rows,) = loop.run_many([state], [own], [curve.table()], ticks)
+    log = loop.layouts.log.unpack(rows)
+    assert path_distance(robot.frame, curve, log["y"]).max() < 0.1 * radius
+    assert np.diff(log["theta"][[0, -1], 0])[0] == pytest.approx(parameters.speed, rel=0.05)

@@ -25,8 +25,9 @@ from onpath.models.paths.distance import path_distance
 from onpath.models.paths.space_curves import saddle
 from onpath.models.paths.spline_curves import DEGREE, MOST_PIECES, SplineCurve
 from onpath.models.systems.catalogue import ROBOTS
-from tests.support.drawings import random_drawing
+from tests.support.drawings import random_drawing, scrawl
 from tests.support.node_page import NodePage, needs_node
+from tests.support.pulls import parameters_of, troubled
 from tests.support.wasm_runs import rows_in_node
 
 TICKS = 400
@@ -124,7 +125,7 @@ def test_no_number_reads_beyond_the_table(law: str, closed: bool) -> None:
 
 
 def test_a_drawing_is_followed_and_one_loop_serves_all_of_its_kind() -> None:
-    first, second = random_drawing(1, 40), random_drawing(2, 300)
+    first, second = scrawl(1), scrawl(2)
     kernel, _ = a_run("five_bar", "path_following", first, 1)
     robot = ROBOTS["five_bar"].make(ROBOTS["five_bar"].parameters())
     for curve in (first, second):
@@ -135,3 +136,13 @@ def test_a_drawing_is_followed_and_one_loop_serves_all_of_its_kind() -> None:
         log = kernel.log.unpack(translate_loop(kernel).run(state, own, curve.table(), 4000)[1])
         assert log["theta"][-1] - log["theta"][0] == pytest.approx(2.0, abs=0.1)
         assert path_distance(robot.frame, curve, log["y"]).max() < 1e-4
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("rate", [1000.0, 100.0])
+@pytest.mark.parametrize("name", ["five_bar", "two_link_arm"])
+def test_random_pulls_on_drawings_stop_nothing(name: str, rate: float) -> None:
+    parameters = parameters_of(name, control_rate=rate, encoder_counts=4000.0)
+    results = troubled(name, parameters, "path_following", 3, 12, scrawl(3))
+    assert [each.fault for each in results if each.fault] == []
+    assert max(each.late for each in results) < 2e-3

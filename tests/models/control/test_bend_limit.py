@@ -1,0 +1,37 @@
+"""The speed that the bends of a drawing allow."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from onpath.models.closed_loop.simulation import speed_on
+from onpath.models.paths.curves import circle
+from onpath.models.systems.catalogue import ROBOTS
+from tests.support.drawings import scrawl
+
+
+@settings(max_examples=10)
+@given(
+    st.integers(0, 2**32),
+    st.sampled_from([1000.0, 250.0, 100.0]),
+    st.floats(0, 1600),
+    st.floats(-20, 20),
+)
+def test_the_tangent_of_a_drawing_turns_slowly_enough(
+    seed: int, rate: float, k1: float, speed: float
+) -> None:
+    parameters = replace(ROBOTS["five_bar"].parameters(), control_rate=rate, K1=k1, speed=speed)
+    curve = scrawl(seed)
+    slowed = speed_on(parameters, curve)
+    assert slowed == speed or (abs(slowed) < abs(speed) and slowed * speed > 0)
+    theta = np.random.default_rng(seed).uniform(-np.pi, np.pi, 500)
+    tangent = np.arctan2(*curve.at(theta, 1).T)
+    ahead = np.arctan2(*curve.at(theta + 1e-7, 1).T)
+    turn = np.abs((ahead - tangent + np.pi) % (2 * np.pi) - np.pi) / 1e-7 * abs(slowed)
+    most = min(0.15 * rate, 2 * np.sqrt(k1) if k1 > 0 else np.inf)
+    assert turn.max() <= 1.1 * most + 1e-3
+    assert speed_on(parameters, circle(0.001)) == speed  # a series keeps its speed
