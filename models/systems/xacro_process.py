@@ -29,6 +29,7 @@ HARMLESS = (
     *("object.__getattr__", "object.__setattr__", "function.__new__", "marshal.load"),
 )
 """What an expanded file may lead to; files and folders are looked at as well."""
+UNDEFINED = "Undefined substitution argument"  # xacro's words for $(arg …) without a value
 
 
 class XacroJob(msgspec.Struct, frozen=True):
@@ -62,6 +63,9 @@ def expanded(file: Path, packages: Mapping[str, Path]) -> bytes:
     except (ProcessEnded, msgspec.MsgspecError):
         raise CodedError("robot_file.xacro_ended", file=file.name) from None
     if found.fault or len(found.text) > LARGEST_FILE:
+        if found.fault.startswith(UNDEFINED):
+            name = shown(found.fault.removeprefix(UNDEFINED).strip())
+            raise CodedError("robot_file.xacro_argument", file=file.name, name=name)
         reason = shown(" ".join(found.fault.split()) or "it makes more than 1 MB", 200)
         raise CodedError("robot_file.xacro_refused", file=file.name, reason=reason)
     return found.text.encode()

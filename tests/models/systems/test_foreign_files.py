@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 from contextlib import suppress
@@ -219,6 +220,18 @@ def test_a_missing_package_of_a_xacro_file_is_named(tmp_path: Path) -> None:
     file.write_text(HEAD + include.replace("{}", "arm_resources"))
     with pytest.raises(CodedError, match="--package arm_resources=FOLDER"):
         read_file(file, Options())
+
+
+def test_an_argument_without_a_value_is_given_one_in_the_file(tmp_path: Path) -> None:
+    pytest.importorskip("xacro")
+    file = tmp_path / "arm.xacro"
+    rest = ARM[ARM.index("<link") :].replace('mass value="0.6"', 'mass value="$(arg load)"')
+    file.write_text(HEAD + rest)
+    with pytest.raises(CodedError) as caught:
+        read_file(file, Options())
+    (line,) = re.findall(r"<.*/>", str(caught.value))
+    file.write_text(HEAD + line.replace("…", "0.7") + rest)
+    assert read_file(file, Options())[0].chain.bodies[0].mass == pytest.approx(0.7)
 
 
 FORBIDDEN = {
