@@ -16,6 +16,9 @@ from onpath.models.errors import Message
 from onpath.models.evaluated import evaluated
 from onpath.models.paths.curves import ORDERS, TERMS, Curve
 from onpath.models.paths.path_checks import (
+    LEAST_MARGIN,
+    LEAST_RADIUS,
+    LEAST_SPEED,
     POINT_CHECKS,
     SAMPLES,
     STRAND_CHECKS,
@@ -26,8 +29,11 @@ from onpath.models.paths.path_checks import (
     sampled_theta,
 )
 from onpath.models.paths.projection import basis
+from onpath.models.paths.spline_curves import SplineCurve
 
 Indices = NDArray[np.intp]
+FINER = 2  # times `Curve.grid`: points of a drawing that are checked
+ROUNDING = 1.02  # of bends as sharp as they may be
 BATCH = 256  # pairs of segments that are checked in one call
 REASONS: Mapping[str, Message] = MappingProxyType(
     {
@@ -35,6 +41,7 @@ REASONS: Mapping[str, Message] = MappingProxyType(
         "outside": Message("fault.outside"),
         "singular": Message("fault.singular"),
         "bends": Message("fault.bends", {"radius": f"{TUBE * 1e3:.0f}"}),
+        "bends_sharply": Message("fault.bends", {"radius": f"{LEAST_RADIUS * 1e3:g}"}),
         "cusp": Message("fault.cusp"),
         "crosses": Message("fault.crosses"),
         "narrow": Message("fault.narrow", {"least": f"{2 * TUBE * 1e3:.0f}"}),
@@ -65,13 +72,30 @@ class Fault:
 def curve_faults(reach: Callable[[Array], Array], curve: Curve) -> list[Fault]:
     """All faults of a curve as a path for a robot; an empty list if it can be followed.
 
-    The curve is checked at `SAMPLES` values of θ.
+    A series is checked at `SAMPLES` values of θ, a drawing at some on each of its pieces. The bends
+    of a drawing need a radius of `LEAST_RADIUS` only, and none where the pen is up.
 
     Args:
         reach: the robot's `Robot.margin`, shape (n, d) -> (n,).
         curve: the candidate, in coordinates of the path's plane.
     """
+    if isinstance(curve, SplineCurve):
+        return _spline_faults(reach, curve)
     return list(_curve_faults(reach, curve.closed, curve.dimension, curve.table().tobytes()))
+
+
+def _spline_faults(reach: Callable[[Array], Array], curve: SplineCurve) -> list[Fault]:
+    theta = curve.sample(FINER * curve.grid)
+    z, first = curve.at(theta), curve.at(theta, 1)
+    margin, speed = reach(z), np.linalg.norm(first[:, :2], axis=1)
+    bad = {
+        "outside": ~(margin > 0),
+        "singular": (margin > 0) & (margin < LEAST_MARGIN),
+        "bends_sharply": curve.draws(theta)
+        & (np.abs(curve.curvature(theta)) * LEAST_RADIUS > ROUNDING),
+        "cusp": speed < LEAST_SPEED,
+    }
+    return [Fault(check, z[at]) for check, at in bad.items() if at.any()]
 
 
 @lru_cache(maxsize=64)
@@ -93,11 +117,41 @@ def ambiguities(curve: Curve) -> list[Fault]:
 
     They do not keep a robot from following the curve, and its user is warned of them. On a path of
     1 m, the distance between samples of two strands exceeds that between the strands by 1 % at
-    most.
+    most. Strands of a drawing are close to each other nearly everywhere; its user is told where
+    they cross.
     """
+    if isinstance(curve, SplineCurve):
+        return _spline_crossings(curve)
     (samples,) = evaluated(_samples(curve.closed, curve.dimension), curve.table())
     z = samples[:, : curve.dimension]
     return strand_faults(z, curve.closed) if np.all(np.isfinite(z)) else []
+
+
+def _spline_crossings(curve: SplineCurve) -> list[Fault]:
+    """Where strands cross while the pen is down; those of a space curve in its plan view."""
+    from scipy.spatial import KDTree  # slow to import; see app/server/warm_up.py
+
+    theta = curve.sample(FINER * curve.grid)
+    z, down = curve.at(theta), curve.draws(theta)
+    ends, last = (np.roll(z, -1, axis=0), None) if curve.closed else (z[1:], -1)
+    begins, down = z[:last], down[:last]
+    along = ends - begins
+    reach = float(np.linalg.norm(along, axis=1).max())
+    i, j = KDTree((begins + ends) / 2).query_pairs(reach, output_type="ndarray").T
+    apart = np.minimum(j - i, len(z) - (j - i)) if curve.closed else j - i
+    kept = (apart > 1) & down[i] & down[j]
+    i, j = i[kept], j[kept]
+    between, a, b = begins[j] - begins[i], along[i], along[j]
+    across = _cross(a, b)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        s, t = _cross(between, b) / across, _cross(between, a) / across
+    hit = (s >= 0) & (s < 1) & (t >= 0) & (t < 1)
+    return [Fault("crosses", begins[i[hit]] + s[hit, None] * a[hit])] if hit.any() else []
+
+
+def _cross(a: Array, b: Array) -> Array:
+    """The cross products of the plan views, two of shape (n, d) -> (n,)."""
+    return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], dtype=float)
 
 
 def strand_faults(z: Array, closed: bool) -> list[Fault]:

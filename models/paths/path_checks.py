@@ -34,6 +34,7 @@ import casadi as ca
 import numpy as np
 
 TUBE = 0.008  # [m], radius of the tube in which the closest point must be unique
+LEAST_RADIUS = 5e-4  # [m], of the bends of a drawing
 STRANDS_APART = np.pi * TUBE  # [m], arc length from which two points are in different strands
 LEAST_MARGIN = 0.2  # smallest admissible value of Robot.margin, which is 1 at home
 LEAST_SPEED = 1e-4  # [m/rad]; slower, a curve has a cusp

@@ -24,9 +24,9 @@ from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
 from onpath.models.paths.curve_fit import APART, DENSE, apart, check_length
 from onpath.models.paths.curves import PERIOD
+from onpath.models.paths.path_checks import LEAST_RADIUS
 from onpath.models.paths.spline_curves import DEGREE, MOST_PIECES, SplineCurve
 
-LEAST_RADIUS = 5e-4  # [m], of the bends of a path
 ROUNDINGS = ((2e-4, 1.0), (4e-4, 1.2), (6e-4, 1.5), (8e-4, 2.0))
 """Width of the smoothing, [m], and factor of the caps' radius; the later ones if bends need it."""
 STEP = 1e-4  # [m], arc length between two points of a line, unless it is long

@@ -13,11 +13,11 @@ from scipy.spatial import KDTree
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
 from onpath.models.paths.curves import PERIOD
+from onpath.models.paths.path_checks import LEAST_RADIUS
 from onpath.models.paths.spline_curves import SplineCurve
 from onpath.models.paths.spline_fit import (
     CAP,
     HASTE,
-    LEAST_RADIUS,
     QUICK,
     SWING,
     spline_through,
