@@ -38,7 +38,7 @@ def test_a_file_becomes_the_path_and_a_hostile_one_is_refused(tab: Tab) -> None:
     design = simulation.editor.design
     for name, content, words in (
         ("bomb.svg", BOMB, "does not stand for plain text"),
-        ("tool.nc", b"G0 X0 Y0\nG41 X3\n", "line 2, column 1: 'G41'"),
+        ("tool.nc", b"G0 X0 Y0\nG41 X3\n", "line 2, column 1: G41"),
         ("big.csv", b"0.01,0.02\n" * (MOST_BYTES // 10 + 1), "larger than 1 MB"),
         ("b.csv", b"x,y\n0.05,0\n0,four\n", "'four' is not a number"),
         ("huge.csv", b"0.01,0.02\n" * 600_000, "larger than 1 MB"),
