@@ -127,6 +127,7 @@ class RobotCard(Struct, frozen=True, kw_only=True):
         tip: the end-point of a robot from a file that suggests several.
         is_built: whether it is in the catalogue; else the name is that of the robot with another
             tip.
+        send: what chooses it.
     """
 
     name: str
@@ -134,6 +135,7 @@ class RobotCard(Struct, frozen=True, kw_only=True):
     differs: str
     text: str
     picture: str
+    send: Sent
     tip: str = ""
     is_built: bool = True
 

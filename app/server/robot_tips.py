@@ -59,10 +59,16 @@ class RobotTips:
         if given is None or tip not in given.tips:
             raise CodedError("robots.no_such_tip")
         wanted = given.with_tip(tip)
-        with self._one_at_a_time:
-            name = built_with(wanted)
-            if not name:
-                name = self._built(wanted, lambda message: post(Remark(message)))
+
+        def tell(message: Message) -> None:
+            post(Remark(message))
+
+        name = built_with(wanted)
+        if not name:
+            if self._one_at_a_time.locked():
+                tell(Message("robots.waiting"))
+            with self._one_at_a_time:
+                name = built_with(wanted) or self._built(wanted, tell)
         if name:
             post(_ChooseBuilt(name))
 

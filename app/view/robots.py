@@ -6,11 +6,14 @@ import base64
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
-from msgspec import structs
+from msgspec import structs, to_builtins
 
-from onpath.app.channel.sheet_messages import RobotCard, RobotSheet
-from onpath.app.common.robot_files import built_with, given_file
+from onpath.app.channel.sheet_messages import ChooseTip, RobotCard, RobotSheet
+from onpath.app.common.robot_files import GivenFile, built_with, given_file
+from onpath.app.lab.commands import ChooseRobot
+from onpath.app.lab.commands.command_codec import message_of
 from onpath.app.view.robot_sketch import robot_sketch
 from onpath.assets import asset_path
 from onpath.lessons.labels import robot_label, robot_text
@@ -44,13 +47,14 @@ def _not_built(cards: Sequence[RobotCard], words: Words) -> Iterator[RobotCard]:
                     text=words("robots.build"),
                     tip=tip,
                     is_built=False,
+                    send=_choosing_tip(card.name, tip),
                 )
 
 
 def robot_card(entry: RobotEntry, words: Words) -> RobotCard:
     """A robot, and what is special about it; one from a file has only its text."""
     text, given = robot_text(entry, words), given_file(entry.name)
-    tip = "" if given is None or len(given.tips) < 2 else given.tip
+    tip = _tip(given)
     text = words("robots.tip", tip=shown(tip)) if tip else text
     return RobotCard(
         name=entry.name,
@@ -59,7 +63,23 @@ def robot_card(entry: RobotEntry, words: Words) -> RobotCard:
         text=about_robot(entry, words),
         picture=picture_of(entry),
         tip=tip,
+        send=choosing(entry.name),
     )
+
+
+def choosing(robot: str) -> dict[str, Any]:
+    """The message that chooses a robot of the catalogue."""
+    tip = _tip(given_file(robot))
+    return _choosing_tip(robot, tip) if tip else message_of(ChooseRobot(robot))
+
+
+def _choosing_tip(robot: str, tip: str) -> dict[str, Any]:
+    return to_builtins(ChooseTip(robot=robot, tip=tip))
+
+
+def _tip(given: GivenFile | None) -> str:
+    """The tip of a robot from a file that suggests several; else ""."""
+    return "" if given is None or len(given.tips) < 2 else given.tip
 
 
 def about_robot(entry: RobotEntry, words: Words) -> str:

@@ -9,6 +9,7 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.commands.command_codec import message_of
 from onpath.app.view.keys import shown_keys
 from onpath.app.view.laws import suitable
+from onpath.app.view.robots import choosing
 from onpath.lessons.course import Course
 from onpath.lessons.labels import path_label, robot_label, robot_text
 from onpath.lessons.sides import law_label, law_text
@@ -33,7 +34,7 @@ def _robots(words: Words) -> Iterator[Found]:
             kind="robot",
             label=robot_label(entry.name, words),
             text=robot_text(entry, words),
-            send=[message_of(c.ChooseRobot(entry.name))],
+            send=[choosing(entry.name)],
         )
 
 

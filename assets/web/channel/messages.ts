@@ -653,6 +653,8 @@ export interface RobotCard {
     text: string
     /** a data URI. */
     picture: string
+    /** what chooses it. */
+    send: Command | PageMessage
     /** the end-point of a robot from a file that suggests several. */
     tip: string
     /** whether it is in the catalogue; else the name is that of the robot with another tip. */

@@ -9,15 +9,14 @@ import { pressed, SheetDialog } from "./sheet"
 export function chooseRobot(texts: Texts, { robots }: RobotSheet, present: string, send: (message: Command | PageMessage) => void): SheetDialog {
     const sheet = new SheetDialog(texts, "robots", phrase(texts, "robots.choose"))
     const cards = robots.map(robot => {
+        const isPresent = robot.is_built && robot.name === present
         const card = pressed("card", "", () => {
             sheet.close()
-            if (robot.tip) send({ is: "choose_tip", robot: robot.name, tip: robot.tip })
-            else if (robot.name !== present) send({ do: "ChooseRobot", name: robot.name })
+            if (!isPresent) send(robot.send)
         })
         const picture = Object.assign(made("img", "robot"), { src: robot.picture, alt: "" }) // its name stands beside it
         card.append(picture, made("b", "", robot.label), made("span", "differs", robot.differs))
         card.title = robot.text
-        const isPresent = robot.is_built && robot.name === present
         card.tabIndex = isPresent ? 0 : -1
         if (isPresent) card.setAttribute("aria-current", "true")
         return card

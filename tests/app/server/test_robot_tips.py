@@ -60,8 +60,11 @@ def test_a_tip_is_built_when_it_is_chosen_and_is_there_for_all(server: LabServer
         given = given_file(name)
         assert len(ROBOTS) == count + 1 and given is not None and given.tip == "tip"
         assert not ROBOTS[name].guesses or ROBOTS[name].guesses[0].kind != "tip"
-        assert cards(other)["tip"]["is_built"] and other.state["robot"] == first
-        other.tell({"is": "choose_tip", "robot": first, "tip": "tip"})
+        card = cards(other)["tip"]
+        assert card["is_built"] and other.state["robot"] == first
+        index = other.ask("index")["found"]
+        assert card["send"] in [each["send"][0] for each in index if each["kind"] == "robot"]
+        other.tell(card["send"])
         other.read(lambda: other.state["robot"] == name)
         assert len(ROBOTS) == count + 1
 

@@ -4,8 +4,8 @@ import { test } from "node:test"
 import type { RobotSheet } from "../../../../assets/web/channel/messages"
 import { chooseRobot } from "../../../../assets/web/parts/robot_sheet"
 
-const ROBOTS = ["a", "b", "c"].map(name => ({ name, label: name.toUpperCase(), text: "", differs: "", picture: "data:,", tip: "", is_built: true }))
-const TIP = { ...ROBOTS[1]!, tip: "tool0", is_built: false }
+const ROBOTS = ["a", "b", "c"].map(name => ({ name, label: name.toUpperCase(), text: "", differs: "", picture: "data:,", tip: "", is_built: true, send: { do: "ChooseRobot", name } }))
+const TIP = { ...ROBOTS[1]!, tip: "tool0", is_built: false, send: { is: "choose_tip", robot: "b", tip: "tool0" } }
 
 /** The robots to choose from, opened by a button; returns what is chosen. */
 function opened(): { button: HTMLButtonElement; chosen: unknown[]; card: () => HTMLElement } {
