@@ -31,7 +31,8 @@ def test_laws_are_compared_while_the_lab_goes_on(browser: Browser, server: LabSe
     told = {cells[0]: float(cells[1]) for cells in map(str.split, _lines(tab))}
     assert told["Trajectory"] > 40
     assert told["Path"] < 6 and told["Waiting"] < 6
-    expect(tab.page.get_by_alt_text("Largest distance to the path over delay")).to_be_visible()
+    figure = tab.page.get_by_role("figure").filter(has_text="Distance to the path over time")
+    expect(figure).to_be_visible()
 
     tab.ask(c.TypeLaw(RIGHT, TYPED))
     own = tab.page.get_by_role("checkbox", name="Own law, right", exact=True)
