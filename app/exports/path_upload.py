@@ -186,10 +186,20 @@ def _helps(
             other = replace(placing, fit=fit, corners=corners, radius=arc or RADIUS)
             with suppress(ValueError):
                 if not curve_faults(robot.margin, path_of_drawing(drawing, other).curve):
-                    values = {"size": f"{1e3 * fit:.0f}", "radius": f"{1e3 * arc:.0f}"}
-                    yield Message(code, values), other
+                    yield _told(code, f"{1e3 * fit:.0f}", f"{1e3 * arc:.0f}"), other
                     helped = True
                     break
+
+
+def _told(code: str, size: str, radius: str) -> Message:
+    """What helps, in words; size and radius in [mm]."""
+    ways = (
+        Message("design.larger", {"size": size}),
+        Message("design.smaller", {"size": size}),
+        Message("design.rounder", {"radius": radius}),
+        Message("design.both", {"size": size, "radius": radius}),
+    )
+    return next(way for way in ways if way.code == code)
 
 
 def import_libraries() -> None:

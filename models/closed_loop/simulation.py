@@ -205,11 +205,14 @@ def settings_vector(
 
 
 def speed_on(parameters: Parameters, curve: Curve) -> float:
-    """The wanted speed of θ, slowed on a drawing to what its bends allow, [rad/s]."""
+    """The wanted speed of θ, [rad/s].
+
+    That of a drawing is for its usual duration, and at most what its bends allow.
+    """
     if not isinstance(curve, SplineCurve):
         return parameters.speed
-    limit = bend_limit(parameters, curve)
-    return min(max(parameters.speed, -limit), limit)
+    wanted, limit = parameters.speed / curve.duration, bend_limit(parameters, curve)
+    return min(max(wanted, -limit), limit)
 
 
 def _plan(robot: Robot, law: str, parameters: Parameters, curve: Curve) -> Array:

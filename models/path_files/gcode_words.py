@@ -45,19 +45,19 @@ def words_of(bare: str, line: int) -> Words:
     while place < end:
         found = _WORD.match(bare, place)
         if found is None:
-            raise _refusal("error.gcode_word", bare, place, line)
+            raise _refusal(bare, place, line)
         letter, number = found[1], found[2]
         name = letter
         if letter in "GM":
             whole, _, rest = number.partition(".")
             name += whole.lstrip("0") or "0" if not rest.strip("0") else number.lstrip("0")
         elif letter not in LETTERS and letter not in "NO":
-            raise _refusal("error.gcode_word", bare, place, line)
+            raise _refusal(bare, place, line)
         value = float(number)
         if not isfinite(value):
-            raise _refusal("error.gcode_word", bare, place, line)
+            raise _refusal(bare, place, line)
         if name in words:
-            raise _refusal("error.gcode_twice", bare, place, line)
+            raise _refusal(bare, place, line, repeats=True)
         words[name] = value
         place = found.end()
         if letter == "M" and value >= FIRST_OWN and name not in ("M280", "M300", "M98", "M99"):
@@ -73,8 +73,14 @@ def column_of(bare: str, name: str) -> str:
     return "1"
 
 
-def _refusal(code: str, bare: str, place: int, line: int) -> CodedError:
+def _refusal(bare: str, place: int, line: int, repeats: bool = False) -> CodedError:
     begin = place + len(bare[place:]) - len(bare[place:].lstrip())
     word = re.match(r"\S[^A-Z\s]*", bare[begin:])
     text = repr((word[0] if word else bare[begin:])[:20])
-    return CodedError(code, line=str(line), column=str(begin + 1), text=text)
+    column = str(begin + 1)
+    return CodedError(
+        "error.gcode_twice" if repeats else "error.gcode_word",
+        line=str(line),
+        column=column,
+        text=text,
+    )

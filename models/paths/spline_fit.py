@@ -27,7 +27,7 @@ from onpath.models.paths.curves import PERIOD
 from onpath.models.paths.path_checks import LEAST_RADIUS
 from onpath.models.paths.spline_curves import DEGREE, MOST_PIECES, SplineCurve
 
-ROUNDINGS = ((2e-4, 1.0), (4e-4, 1.2), (6e-4, 1.5), (8e-4, 2.0))
+ROUNDINGS = ((2e-4, 1.0), (3e-4, 1.1), (4e-4, 1.2), (5e-4, 1.35), (6e-4, 1.5), (8e-4, 2.0))
 """Width of the smoothing, [m], and factor of the caps' radius; the later ones if bends need it."""
 STEP = 1e-4  # [m], arc length between two points of a line, unless it is long
 MOST_STEPS = 40_000  # of a line
@@ -37,9 +37,7 @@ TAPER = 8  # length on which a line makes room for this half circle, in radii
 QUICK = 0.314  # [m/s], speed on straight lines: that of the usual circle
 HASTE = 1.5  # factor of `QUICK` where the pen is up
 TURNING = 2.0  # [m/s²], acceleration in bends and along the path: that of the usual circle
-SWING = (
-    40.0  # [rad/s], of the tangent: 2 √K1 of the usual gains, up to which a held arm keeps a bend
-)
+SWING = 30.0  # [rad/s], of the tangent in bends; a held arm keeps a bend up to 2 √K1, usually 40
 SLOW = 0.05  # least speed as a share of `QUICK`, so that σ' is nowhere 0
 AT_ENDS = 0.3  # the same at the ends of an open path
 EASING = 2e-3  # [m], width of the smoothing of the speed
@@ -260,8 +258,8 @@ def _times(line: Line, bends: Array) -> Array:
     """Time at which each point of a line is passed, shape (n,), [s].
 
     The speed is at most `QUICK`, the acceleration in bends and along the line `TURNING`, and the
-    tangent turns by at most `SWING`; with the pen up they are `HASTE` times as large, the
-    acceleration its square.
+    tangent turns by at most `SWING`. With the pen up, speed and acceleration are `HASTE` and
+    `HASTE`² times as large.
 
     Args:
         bends: curvature at the points, not negative, shape (n,), [1/m].
@@ -269,8 +267,8 @@ def _times(line: Line, bends: Array) -> Array:
     haste = np.where(line.pen, 1.0, HASTE)
     steps = np.maximum(np.linalg.norm(np.diff(line.points, axis=0), axis=1), 1e-9)
     bends = np.maximum(bends, 1e-9)
-    speed = np.minimum(np.sqrt(TURNING / bends), SWING / bends)
-    speed = haste * np.clip(speed, SLOW * QUICK, QUICK)
+    speed = np.minimum(haste * np.sqrt(TURNING / bends), SWING / bends)
+    speed = np.clip(speed, SLOW * QUICK, haste * QUICK)
     if not line.closed:
         speed[[0, -1]] = np.minimum(speed[[0, -1]], AT_ENDS * QUICK)
     squared, gain = speed**2, 2 * TURNING * haste[1:] ** 2 * steps
@@ -391,7 +389,7 @@ def _compared(curve: SplineCurve, lines: list[Array]) -> SplineCurve:
     from scipy.spatial import KDTree
 
     dense = np.vstack([_even(line)[0] for line in lines])
-    theta = curve.sample(4 * curve.grid)
+    theta = curve.sample(max(4 * curve.grid, int(2 * curve.length() / STEP)))
     seen = curve.at(theta[curve.draws(theta)])
     apart = KDTree(dense).query(seen)[0], KDTree(seen).query(dense)[0]
     thin = sum(len(line) for line in lines) // DENSE + 1

@@ -129,7 +129,7 @@ def test_what_cannot_be_followed_is_told_and_the_nearest_path_is_taken_if_asked_
     assert "follow the nearest path" in said.err and json.loads(said.out)["laws"]
     file.write_text("G0 X0 Y0\nG1 X30\nG41\n", "utf-8")
     assert run_command([*SHORT, "--path", f"@{file}"]) == 2
-    assert f"@{file}: line 3, column 1: 'G41' is not read" in capsys.readouterr().err
+    assert f"@{file}: line 3, column 1: G41 moves the path aside" in capsys.readouterr().err
 
 
 @pytest.mark.thorough
