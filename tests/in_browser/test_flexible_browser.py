@@ -81,11 +81,12 @@ def pulled_in(tab: Tab, plane: str) -> None:
         moved = pulled() - before
         flat = moved[2] if plane == HORIZONTAL else moved @ [0.1, 1.0, 0.0]
         assert abs(flat) < 1e-6
+        wait_for(lambda: "Time is paused" in tab.said())
         tab.ask(c.SetRunning(True))
         wait_for(lambda: deflection(tab) > 1e-3)
     wait_for(lambda: not lab.simulation.forces.hands)
     wait_for(lambda: deflection(tab) < 1e-3)
-    wait_for(lambda: tab.said().startswith("Time is paused"))
+    wait_for(lambda: "Time is paused" not in tab.said())
 
 
 def test_the_path_is_dragged_in_its_slanted_plane(tab: Tab) -> None:
