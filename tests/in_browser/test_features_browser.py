@@ -98,14 +98,14 @@ ROWS = {
     ),
     "tasks, hints, quizzes, numbers, own words": Row((".task", ".quiz input", ".task details")),
     "marks and arrows in the scene, start beside the path": Row(
-        said=("start.show", "start.beside", "breakdown.slowly")
+        said=("start.show", "breakdown.slowly"), names=(SETTINGS["start_beside"].spec.label,)
     ),
     "progress": Row(("#save", "#read", "#forget")),
     "labels, tube, coordinates, rank test, both errors, effective mass, singular zone": Row(
         said=tuple(f"show.{name}" for name in ("labels", "tube", "grid", "rank", "errors", "mass"))
     ),
     "sound": Row(said=("display.sounds",)),
-    "one-sided wall": Row(said=("wall.switch",)),
+    "one-sided wall": Row(names=(SETTINGS["wall"].spec.label,)),
     "looking back over the last minute": Row(said=("chart.look",)),
     "set-ups, share codes, labs that are kept": Row(said=("keep.share", "keep.paste")),
     "classroom, concept test, routes, record as a page": Row(said=("keep.report", "class.export")),
