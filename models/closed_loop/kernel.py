@@ -200,6 +200,7 @@ def _bases(system: MechanicalSystem, kind: Kind, law: Law) -> ca.Function:
     places = [predicted(state, settings)]
     if law.reference is not None:
         places.append(law.reference(clock_at(kind, law, state, settings, settings["look_ahead"])))
+    results: list[ca.SX]
     if kind.spline:
         found = [spline_basis(theta, kind.closed, settings["pieces"]) for theta in places]
         results = [ca.horzcat(*each) for each in zip(*found, strict=True)]

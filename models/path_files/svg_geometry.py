@@ -173,7 +173,8 @@ def _function(name: str, text: str, size: Size) -> Array:
             return matrix(x, 0, 0, 1, 0, 0)
         case "scaley", [y]:
             return matrix(1, 0, 0, y, 0, 0)
-    raise ValueError(f"{name}({text[:20]}) is no transform")
+        case _:
+            raise ValueError(f"{name}({text[:20]}) is no transform")
 
 
 def _angle(word: str) -> float:

@@ -64,7 +64,8 @@ def spline_basis(theta: ca.SX, closed: bool, pieces: ca.SX) -> tuple[ca.SX, ca.S
     place = (inner + np.pi) * per_radian
     last = ca.fmin(ca.fmax(ca.floor(pieces) - 1, 0), MOST_PIECES - 1)
     piece = ca.fmin(ca.fmax(ca.floor(place), 0), last)
-    return ca.horzcat(*(ca.vertcat(*row) for row in piece_basis(place - piece, per_radian))), piece
+    orders: list[ca.SX] = [ca.vertcat(*row) for row in piece_basis(place - piece, per_radian)]
+    return ca.horzcat(*orders), piece
 
 
 @overload
@@ -79,7 +80,8 @@ def windowed(windows: Sequence[Any], basis: Any) -> Any:
         basis: of all windows, side by side, (WINDOW, ORDERS) each.
     """
     parts = ca.horzsplit(basis, ORDERS)
-    return ca.horzcat(*(ca.vec(w @ each) for w, each in zip(windows, parts, strict=True)))
+    values: Any = [ca.vec(w @ each) for w, each in zip(windows, parts, strict=True)]
+    return ca.horzcat(*values)
 
 
 def window(table: ca.MX, piece: ca.MX) -> ca.MX:

@@ -19,6 +19,7 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
@@ -132,7 +133,7 @@ def _even(points: Array) -> tuple[Array, float]:
     """The points of a polyline at even steps, and the step [m]."""
     s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
     count = int(np.clip(s[-1] / STEP, 32, MOST_STEPS))
-    at = np.linspace(0.0, s[-1], count + 1)
+    at: Array = np.linspace(0.0, float(s[-1]), count + 1)
     return np.stack([np.interp(at, s, each) for each in points.T], axis=-1), float(s[-1] / count)
 
 
@@ -168,10 +169,9 @@ def _capped(points: Array, step: float, closed: bool, radius: float) -> Array:
         angle = np.linspace(0.0, np.pi, 2 * reach + 1)[:, None]
         arc = ring[i] + radius * (np.cos(angle) * side + (np.sin(angle) - 1) * along)
         cut = round(radius / step)
-        parts += [(begin, i - cut), arc]
+        parts += [moved[begin : i - cut], arc]  # later cusps may move these points, too
         begin = i + cut + 1
-    parts.append((begin, len(ring)))
-    result = np.vstack([moved[p[0] : p[1]] if isinstance(p, tuple) else p for p in parts])
+    result = np.vstack([*parts, moved[begin:]])
     if not closed:
         return result
     first = int(np.linalg.norm(result - points[0], axis=1).argmin())
@@ -225,14 +225,14 @@ def _link(before: Array, after: Array, size: float) -> Array:
     radius = max(LINK_RADIUS, 0.04 * size)
     a, b = complex(*before[-1]), complex(*after[0])
     leaving, arriving = _direction(before[-4:]), _direction(after[:4])
-    ways = list[tuple[float, Array]]()
+    ways = list[tuple[float, NDArray[np.complex128]]]()
     for first in (1, -1):
         for last in (1, -1):
             c, d = a + 1j * first * radius * leaving, b + 1j * last * radius * arriving
             squared = abs(d - c) ** 2 - (radius * (last - first)) ** 2
             if squared < 0 or d == c:
                 continue
-            straight = squared**0.5
+            straight = float(squared) ** 0.5
             along = (d - c) / (straight + 1j * radius * (last - first))
             along /= abs(along)
             begin = float(first * np.angle(along / leaving)) % PERIOD
@@ -330,7 +330,7 @@ def _in_pieces(line: Line, time: Array, close: float) -> SplineCurve:
     """The path of a line that is passed at given times."""
     pieces = FIRST_PIECES
     while True:
-        at = np.linspace(0.0, time[-1], DENSITY * pieces + 1)
+        at: Array = np.linspace(0.0, float(time[-1]), DENSITY * pieces + 1)
         z = np.stack([np.interp(at, time, each) for each in line.points.T], axis=-1)
         points, there = _least_squares(z, pieces, line.closed)
         raised, duration = _raised(line.pen, time), float(time[-1])

@@ -31,7 +31,9 @@ def test_the_path_rises_and_the_follower_comes_to_it_and_stays() -> None:
     lab = risen(0.03, 3.0)
     assert_sound(lab)
     curve = lab.simulation.editor.curve
-    assert np.allclose(curve.series, saddle(lab.simulation.editor.design.curve, 0.03).series)
+    assert np.allclose(
+        curve.coefficients, saddle(lab.simulation.editor.design.curve, 0.03).coefficients
+    )
     heights = list[float]()
     for _ in range(30):
         run(lab, 1 / 30)
@@ -85,7 +87,9 @@ def test_a_share_code_brings_back_the_path_with_its_rise() -> None:
     restore(again, decode(encode(setup)))
     assert again.entry is ARM and capture(again) == setup
     assert again.editor.rise == -0.035
-    assert np.allclose(again.editor.curve.series, lab.simulation.editor.curve.series, atol=1e-9)
+    assert np.allclose(
+        again.editor.curve.coefficients, lab.simulation.editor.curve.coefficients, atol=1e-9
+    )
 
 
 def test_a_robot_that_stays_in_its_plane_has_no_rise() -> None:

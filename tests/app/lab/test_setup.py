@@ -123,7 +123,9 @@ def test_a_path_comes_back_where_it_was(design: PathDesign) -> None:
         assert back.curve.closed == design.curve.closed
         assert np.abs(back.curve.at(theta) - design.curve.at(theta)).max() < 2e-5
         assert np.abs(back.points - design.points).max() < 2e-5
-        np.testing.assert_array_equal(other.simulation.editor.curve.series, back.curve.series)
+        np.testing.assert_array_equal(
+            other.simulation.editor.curve.coefficients, back.curve.coefficients
+        )
 
 
 @pytest.mark.parametrize("closed", [True, False])

@@ -50,7 +50,7 @@ WILD = st.one_of(
 INDICES = st.one_of(st.none(), st.integers(-3, 30))
 
 
-EIGHT = presets()["figure of eight"].curve
+EIGHT = presets()["figure of eight"].curve.coefficients[0]
 
 
 def points(most: int) -> st.SearchStrategy[np.ndarray]:
@@ -163,12 +163,10 @@ COMMANDS: dict[type, st.SearchStrategy[Any]] = {
     c.FollowCurve: st.builds(
         c.FollowCurve,
         st.booleans(),
-        st.one_of(
-            points(3), st.sampled_from([EIGHT.terms(), 9 * EIGHT.terms(), 0.1 * EIGHT.terms()])
-        ),
+        st.one_of(points(3), st.sampled_from([EIGHT, 9 * EIGHT, 0.1 * EIGHT])),
         st.one_of(st.none(), points(6)),
         WILD,
-        st.one_of(st.none(), st.just(EIGHT.terms()), points(3)),
+        st.one_of(st.none(), st.just(EIGHT), points(3)),
         WILD,
         st.text(),
     ),

@@ -219,7 +219,9 @@ def test_the_tube_is_that_of_the_path_that_is_drawn(entry: RobotEntry) -> None:
     lab.simulation.editor.advance(10.0)
     snapshot = take_page_snapshot(lab, 1.0)
     robot, curve = lab.simulation.robot, lab.simulation.editor.curve
-    assert np.allclose(drawn_curve(robot, snapshot.path).series, curve.series, atol=1e-10)
+    assert np.allclose(
+        drawn_curve(robot, snapshot.path).coefficients, curve.coefficients, atol=1e-10
+    )
     shape = tube_shape(robot, snapshot.path)
     z = robot.frame.planar(robot.output_at(shape.offsets[:, 0]))
     _, distance = curve.plan.nearest(z)
@@ -252,7 +254,7 @@ def test_the_tube_of_a_rising_path_lies_around_it_in_space() -> None:
     robot, path = lab.simulation.robot, take_page_snapshot(lab, 1.0).path
     curve = drawn_curve(robot, path)
     flat = lab.simulation.editor.design.curve
-    assert np.allclose(curve.series, saddle(flat, 0.03).series, atol=1e-10)
+    assert np.allclose(curve.coefficients, saddle(flat, 0.03).coefficients, atol=1e-10)
     shape = tube_shape(robot, path)
     around = robot.output_at(shape.fill.vertices)
     gaps = around[:, None] - curve.at(curve.sample(2000))

@@ -75,7 +75,7 @@ def read(text: str | bytes, name: str = "a.csv", **options: object) -> ImportedP
 
 def same(one: ImportedPath, other: ImportedPath) -> bool:
     return one.curve.closed == other.curve.closed and np.array_equal(
-        one.curve.series, other.curve.series
+        one.curve.coefficients, other.curve.coefficients
     )
 
 
@@ -121,7 +121,7 @@ def test_a_unit_in_the_names_or_asked_for_scales_the_points(name: str) -> None:
             *(f"{a!r},{b!r}" for a, b in (size * CORNERS).tolist()),
         ]
         found = read("\n".join(rows))
-        np.testing.assert_allclose(found.curve.series, PLAIN.curve.series, atol=1e-12)
+        np.testing.assert_allclose(found.curve.coefficients, PLAIN.curve.coefficients, atol=1e-12)
         asked = read("\n".join(rows[1:]), unit=unit)
         assert same(found, asked)
 
@@ -176,7 +176,7 @@ def test_a_raised_tool_ends_a_line() -> None:
 @pytest.mark.parametrize("way", TOOLS)
 def test_a_tool_path_means_the_same_however_it_is_written(way: str) -> None:
     plain, other = read(TOOL, "a.nc").curve, read(TOOLS[way], "a.nc").curve
-    np.testing.assert_allclose(other.series, plain.series, atol=1e-9)
+    np.testing.assert_allclose(other.coefficients, plain.coefficients, atol=1e-9)
     assert plain.closed and plain.length() == pytest.approx(0.14 + 0.04 + np.pi * 0.02, rel=0.02)
 
 
@@ -216,7 +216,7 @@ DRAWINGS = {
 @pytest.mark.parametrize("way", DRAWINGS)
 def test_a_drawing_means_the_same_however_it_is_written(way: str) -> None:
     plain, other = read(DRAWING, "a.svg").curve, read(DRAWINGS[way], "a.svg").curve
-    np.testing.assert_allclose(other.series, plain.series, atol=1e-9)
+    np.testing.assert_allclose(other.coefficients, plain.coefficients, atol=1e-9)
     t = np.linspace(0, 1, 50)[:, None]
     for points in LEAF:  # Bézier curves on paper; there y points down, in the plane of a path up
         a, b, c, d = np.array(points) * (1e-3, -1e-3) + (1e-3, -2e-3)
@@ -298,7 +298,7 @@ def test_of_several_lines_the_longest_is_taken_and_told() -> None:
     two = TOOL + "G0 X0 Y0\nG2 X0 Y0 I10 J0\n"
     found = read(two, "a.nc")
     assert same(found, read(TOOL, "a.nc")) or np.allclose(
-        found.curve.series, read(TOOL, "a.nc").curve.series
+        found.curve.coefficients, read(TOOL, "a.nc").curve.coefficients
     )
     assert "Of 2 lines" in str(found.remarks[0])
     small = read(two, "a.nc", part=(2,)).curve
@@ -476,7 +476,7 @@ def test_a_mangled_file_is_a_path_or_a_refusal_with_a_line(
         assert where or error.message.code in WHOLE, str(error)
         return
     event("a path")
-    assert np.isfinite(found.curve.series).all() and np.isfinite(found.curve.deviation)
+    assert np.isfinite(found.curve.coefficients).all() and np.isfinite(found.curve.deviation)
     given_points: Array | None = found.curve.given
     assert given_points is not None and np.abs(given_points).max() <= LARGEST
 

@@ -38,8 +38,9 @@ def checks(faults: list[Fault]) -> list[str]:
 
 def near(fault: Fault, curve: SplineCurve, share: float) -> bool:
     """Whether it is within ten pieces of the planted shape, and nowhere else."""
-    theta = -np.pi + 2 * np.pi * (share + np.array([-0.05, 0.08]))
-    low, high = curve.at(np.linspace(*theta, 400)).min(0), curve.at(np.linspace(*theta, 400)).max(0)
+    begin, end = (-np.pi + 2 * np.pi * (share + each) for each in (-0.05, 0.08))
+    there = curve.at(np.linspace(begin, end, 400))
+    low, high = there.min(0), there.max(0)
     return bool(((fault.points >= low - 1e-3) & (fault.points <= high + 1e-3)).all())
 
 

@@ -55,6 +55,11 @@ def dense(line: Array) -> Array:
     return np.stack([np.interp(at, s, each) for each in line.T], axis=-1)
 
 
+def farthest(points: Array, line: Array) -> float:
+    """The largest distance of points from those of a line, [m]."""
+    return float(np.max(KDTree(line).query(points)[0]))
+
+
 def speeds(curve: SplineCurve, theta: Array) -> Array:
     """Speed at the usual rate of θ, [m/s]."""
     return np.linalg.norm(curve.at(theta, 1), axis=-1) * PERIOD / curve.duration
@@ -67,7 +72,7 @@ def test_a_signature_is_followed_within_two_per_cent_and_can_be(seed: int, smoot
     curve = spline_through([stroke])
     theta = curve.sample(16 * curve.grid)
     seen, line = curve.at(theta), dense(stroke)
-    apart = max(KDTree(line).query(seen)[0].max(), KDTree(seen).query(line)[0].max())
+    apart = max(farthest(seen, line), farthest(line, seen))
     assert apart <= 0.02 * SIZE and curve.deviation == pytest.approx(apart, abs=1e-4)
     bends = np.abs(curve.curvature(theta))
     assert bends.max() < 1.02 / LEAST_RADIUS
@@ -96,8 +101,8 @@ def test_between_strokes_the_pen_is_up_and_else_it_draws_them(seed: int, count: 
     theta = curve.sample(16 * curve.grid)
     down = curve.draws(theta)
     lines = [dense(stroke) for stroke in strokes]
-    assert KDTree(np.vstack(lines)).query(curve.at(theta[down]))[0].max() <= curve.deviation + 1e-4
-    assert KDTree(curve.at(theta[down])).query(np.vstack(lines))[0].max() <= curve.deviation + 1e-4
+    assert farthest(curve.at(theta[down]), np.vstack(lines)) <= curve.deviation + 1e-4
+    assert farthest(np.vstack(lines), curve.at(theta[down])) <= curve.deviation + 1e-4
     assert curve.deviation <= 0.02 * np.ptp(np.vstack(strokes), axis=0).max()
     assert speeds(curve, theta).max() < 1.1 * HASTE * QUICK
     edges = [-np.pi, *(edge for link in curve.raised for edge in link), np.pi]
@@ -129,7 +134,7 @@ def test_more_points_of_the_same_lines_change_nothing(seed: int) -> None:
     more = [a + between * (b - a) for a, b in pairwise(stroke)]
     first, second = spline_through([stroke]), spline_through([np.vstack([*more, stroke[-1:]])])
     there, here = (each.at(each.sample(4096)) for each in (first, second))
-    assert max(KDTree(here).query(there)[0].max(), KDTree(there).query(here)[0].max()) < 1e-4
+    assert max(farthest(there, here), farthest(here, there)) < 1e-4
 
 
 @pytest.mark.parametrize(

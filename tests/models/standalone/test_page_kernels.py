@@ -19,7 +19,7 @@ from onpath.models.evaluated import evaluated
 from onpath.models.paths.curve_blend import blend
 from onpath.models.paths.curve_faults import ambiguities, curve_faults
 from onpath.models.paths.curve_fit import closed_through, open_through
-from onpath.models.paths.curves import TERMS, Curve, circle, ellipse, from_terms
+from onpath.models.paths.curves import TERMS, Curve, SeriesCurve, circle, ellipse, from_terms
 from onpath.models.paths.path_checks import SAMPLES
 from onpath.models.paths.path_design import REACH, presets
 from onpath.models.standalone.edit import CHECKS, ROW, edit_scans
@@ -168,6 +168,7 @@ def test_a_curve_is_refused_for_the_lab_s_reasons_and_in_the_same_places(name: s
 def wavy(rng: np.random.Generator) -> Curve:
     """A random closed or open curve, some of them as good paths as the presets."""
     start = presets()[str(rng.choice(["circle", "clover", "segment", "figure of eight"]))].curve
+    assert isinstance(start, SeriesCurve)
     terms = start.terms().copy()
     terms[:9] += rng.normal(0, rng.choice([0.0, 0.002, 0.02]), terms[:9].shape)
     return from_terms(start.closed, rng.uniform(0.5, 1.5) * terms)

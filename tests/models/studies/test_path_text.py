@@ -18,7 +18,9 @@ CORNERS = np.array([[0.05, 0.0], [0.0, 0.04], [-0.05, 0.0], [0.0, -0.04]])
 
 @pytest.mark.parametrize("name", presets())
 def test_a_preset_is_meant_by_its_name(name: str) -> None:
-    assert np.array_equal(curve_from_text(f" {name} ").series, presets()[name].curve.series)
+    assert np.array_equal(
+        curve_from_text(f" {name} ").coefficients, presets()[name].curve.coefficients
+    )
 
 
 def test_circle_ellipse_and_segment_are_exact() -> None:
@@ -36,10 +38,15 @@ def test_points_mean_the_same_as_text_and_as_json(closed: bool) -> None:
     words = " ".join(map(str, CORNERS.ravel()))
     typed = curve_from_text(f"{'closed' if closed else 'open'} {words}")
     read = curve_from_text(json.dumps({"closed": closed, "points": CORNERS.tolist()}))
-    assert np.array_equal(typed.series, read.series) and typed.closed is read.closed is closed
+    assert (
+        np.array_equal(typed.coefficients, read.coefficients)
+        and typed.closed is read.closed is closed
+    )
     assert typed.nearest(CORNERS)[1].max() < 2e-3
     if closed:
-        assert np.array_equal(curve_from_text(json.dumps(CORNERS.tolist())).series, typed.series)
+        assert np.array_equal(
+            curve_from_text(json.dumps(CORNERS.tolist())).coefficients, typed.coefficients
+        )
 
 
 @pytest.mark.parametrize(
@@ -82,7 +89,7 @@ def test_any_text_is_a_curve_or_a_complaint(text: str) -> None:
         curve = curve_from_text(text)
     except ValueError:
         return
-    assert isinstance(curve, Curve) and np.isfinite(curve.series).all()
+    assert isinstance(curve, Curve) and np.isfinite(curve.coefficients).all()
 
 
 def test_an_equation_means_its_closed_line() -> None:
@@ -119,7 +126,9 @@ def test_an_equation_without_one_smooth_closed_line_is_refused(expression: str, 
 
 def test_a_minus_of_a_typesetter_and_commas_between_numbers_are_read() -> None:
     plain = curve_from_text("segment -0.05 0 0.05 -0.02")
-    assert np.array_equal(curve_from_text("segment −0.05,0 0.05,−0.02").series, plain.series)
+    assert np.array_equal(
+        curve_from_text("segment −0.05,0 0.05,−0.02").coefficients, plain.coefficients
+    )
 
 
 @pytest.mark.parametrize(

@@ -163,7 +163,9 @@ def test_the_predefined_paths_of_a_small_robot_are_smaller(tmp_path: Path) -> No
     for name in ("circle", "segment"):
         design = presets(robot.radius)[name]
         assert curve_faults(robot.margin, design.curve) == []
-        assert np.array_equal(curve_from_text(name, robot.radius).series, design.curve.series)
+        assert np.array_equal(
+            curve_from_text(name, robot.radius).coefficients, design.curve.coefficients
+        )
     ROBOTS[found.entry.name] = found.entry
     try:
         experiment = experiments(found.entry.name)["obstruction"]
