@@ -34,11 +34,13 @@ def test_laws_are_compared_while_the_lab_goes_on(browser: Browser, server: LabSe
     figure = tab.page.get_by_role("figure").filter(has_text="Distance to the path over time")
     expect(figure).to_be_visible()
 
+    tab.page.keyboard.press("Escape")
     tab.ask(c.TypeLaw(RIGHT, TYPED))
-    own = tab.page.get_by_role("checkbox", name="Own law, right", exact=True)
+    tab.press("Compare laws…")
+    own = tab.page.get_by_role("checkbox", name="Own law", exact=True)
     own.check(timeout=20_000)
     tab.press("Compare")
-    expect(tab.page.locator(f"{TABLE} tbody tr", has_text=TYPED)).to_have_count(1, timeout=60_000)
+    expect(tab.page.locator(f"{TABLE} tbody tr", has_text="Own law")).to_have_count(1, timeout=60_000)
 
     tab.ask(c.Set("speed", 0.0))
     tab.press("Compare")
