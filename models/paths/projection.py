@@ -80,8 +80,8 @@ def windowed(windows: Sequence[Any], basis: Any) -> Any:
         basis: of all windows, side by side, (WINDOW, ORDERS) each.
     """
     parts = ca.horzsplit(basis, ORDERS)
-    values: Any = [ca.vec(w @ each) for w, each in zip(windows, parts, strict=True)]
-    return ca.horzcat(*values)
+    columns: list[ca.SX] = [ca.vec(w @ e) for w, e in zip(windows, parts, strict=True)]
+    return ca.horzcat(*columns)
 
 
 def window(table: ca.MX, piece: ca.MX) -> ca.MX:

@@ -134,7 +134,7 @@ def _even(points: Array) -> tuple[Array, float]:
     s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
     count = int(np.clip(s[-1] / STEP, 32, MOST_STEPS))
     at: Array = np.linspace(0.0, float(s[-1]), count + 1)
-    return np.stack([np.interp(at, s, each) for each in points.T], axis=-1), float(s[-1] / count)
+    return np.stack([np.interp(at, s, points[:, i]) for i in (0, 1)], axis=-1), float(s[-1] / count)
 
 
 def _capped(points: Array, step: float, closed: bool, radius: float) -> Array:
@@ -331,7 +331,7 @@ def _in_pieces(line: Line, time: Array, close: float) -> SplineCurve:
     pieces = FIRST_PIECES
     while True:
         at: Array = np.linspace(0.0, float(time[-1]), DENSITY * pieces + 1)
-        z = np.stack([np.interp(at, time, each) for each in line.points.T], axis=-1)
+        z = np.stack([np.interp(at, time, line.points[:, i]) for i in (0, 1)], axis=-1)
         points, there = _least_squares(z, pieces, line.closed)
         raised, duration = _raised(line.pen, time), float(time[-1])
         curve = SplineCurve(line.closed, points, raised=raised, duration=duration)

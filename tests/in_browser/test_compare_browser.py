@@ -40,7 +40,9 @@ def test_laws_are_compared_while_the_lab_goes_on(browser: Browser, server: LabSe
     own = tab.page.get_by_role("checkbox", name="Own law", exact=True)
     own.check(timeout=20_000)
     tab.press("Compare")
-    expect(tab.page.locator(f"{TABLE} tbody tr", has_text="Own law")).to_have_count(1, timeout=60_000)
+    expect(tab.page.locator(f"{TABLE} tbody tr", has_text="Own law")).to_have_count(
+        1, timeout=60_000
+    )
 
     tab.ask(c.Set("speed", 0.0))
     tab.press("Compare")
