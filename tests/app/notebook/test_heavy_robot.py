@@ -123,7 +123,7 @@ def test_a_comparison_says_which_law_asks_for_more_and_of_which_motor(
     heavy: RobotEntry, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     command = ["compare", "--robot", str(written(tmp_path)), "--path", "circle 0.1", "--json"]
-    command += ["--law", LAWS[0], "--obstruction", "none", "--set", "speed=1"]
+    command += ["--law", LAWS[0], "--obstruction", "none", "--set", "speed=6"]
     assert run_command([*command, "--set", "torque_limit=100"]) == 0
     printed = capsys.readouterr()
     assert "more than the" not in printed.err
@@ -132,7 +132,7 @@ def test_a_comparison_says_which_law_asks_for_more_and_of_which_motor(
     printed = capsys.readouterr()
     told = json.loads(printed.out)["beyond_efforts"][LAWS[0]]
     assert told.startswith("the motor of joint") and f"path following: {told}" in printed.err
-    parameters = with_values(heavy.parameters(), {"speed": 1.0})
+    parameters = with_values(heavy.parameters(), {"speed": 6.0})
     found = {LAWS[0]: outcomes_of(heavy.name, parameters, circle(0.1), LAWS[0], "none")}
     (row,) = compared(found, LAWS[:1], "none", heavy.make(parameters), Words("de")).rows
     assert "der Motor von joint" in row.beyond

@@ -33,7 +33,6 @@ from tests.bench.hostile_messages import (
     wild_request,
 )
 from tests.support.lab import assert_sound
-from tests.support.own_socket import feeds
 from tests.support.student import Student
 from tests.support.waiting import wait_for
 
@@ -181,10 +180,7 @@ def test_a_sheet_to_draw_on_with_every_index(tab: Tab) -> None:
 
 @pytest.mark.thorough
 def test_a_wall_and_the_start_of_a_run_with_every_index(tab: Tab) -> None:
-    (feed,) = feeds(tab.server).values()
-    assert feed.scene is not None
-    scene: Any = feed.scene._scene
-    scene.show_start(True)
+    tab.student.set("show_start", True)
     tab.lab.post(c.Set("wall", True))
     wait_for(lambda: {"/wall/body", "/wall/ends", "/start/ball"} <= set(tab.nodes()), WAIT)
     hit_every_node(tab)
