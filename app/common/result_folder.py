@@ -13,6 +13,7 @@ from typing import Any
 from onpath.models.control.laws.law import Law
 from onpath.models.control.laws.law_digest import digest
 from onpath.models.control.laws.registry import law_named
+from onpath.models.paths.spline_curves import SplineCurve
 from onpath.models.studies.experiments import Experiment
 
 VERSION = version("onpath")
@@ -77,6 +78,7 @@ def key_of(experiment: Experiment, law: str, *others: str) -> str:
         ValueError: nobody can tell what the law is made of.
     """
     data, curve, source = experiment.data(), experiment.curve(), experiment.entry.source
+    duration = curve.duration if isinstance(curve, SplineCurve) else 1.0
     made_of = (
         VERSION,
         experiment.entry.name,
@@ -85,7 +87,7 @@ def key_of(experiment: Experiment, law: str, *others: str) -> str:
         data["own_gains"],
         sorted(data["schedule"].items(), key=str),
         data["start"].tobytes(),
-        (curve.closed, curve.equation, curve.coefficients.tobytes()),
+        (curve.closed, curve.equation, curve.coefficients.tobytes(), duration),
         _made_of(law_named(law)),
         others,
     )

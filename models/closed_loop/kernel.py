@@ -338,11 +338,9 @@ def _integral(
 def bounded(integral: ca.SX, settings: Fields, view: View, command: ControlAction) -> ca.SX:
     """The integral, shortened so that |K3 ∫e dt| <= K1 ρ: it moves the balance by ρ at most.
 
-    ρ is 10 mm, or half the radius of curvature at the closest point if that is less: the arm would
-    stay inside of a bend otherwise.
-
     Otherwise a robot that a hand holds off its path would learn to push with the hand's force,
-    which would throw it to the other side when the hand lets go.
+    which would throw it to the other side when the hand lets go. ρ is 10 mm, or half the radius of
+    curvature at the closest point if that is less; with more, the arm would stay inside of a bend.
     """
     size, most = _size_of_integral(integral, settings), _most_of_integral(settings, view, command)
     return integral * ca.if_else(size > most, most / size, 1)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from onpath.models.arrays import Array
@@ -24,7 +26,7 @@ def blend(old: Curve, new: Curve, fraction: float) -> Curve:
     old, new = (curve if curve.dimension == d else in_space(curve) for curve in (old, new))
     mixed = (1 - fraction) * old.coefficients + fraction * new.coefficients
     if isinstance(new, SplineCurve):
-        return SplineCurve(new.closed, mixed, new.raised)
+        return replace(new, points=mixed, given=None, deviation=0.0)
     return SeriesCurve(new.closed, mixed)
 
 

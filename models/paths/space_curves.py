@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from onpath.models.paths.curves import PERIOD, Curve, SeriesCurve, chebyshev_curve, fourier
@@ -20,7 +22,7 @@ def in_space(curve: Curve, height: Curve | None = None) -> Curve:
     zeta = np.zeros_like(plan[..., :1]) if height is None else height.coefficients[..., :1]
     both = np.concatenate([plan, zeta], axis=-1)
     if isinstance(curve, SplineCurve):
-        return SplineCurve(curve.closed, both, curve.raised)
+        return replace(curve, points=both, given=None, deviation=0.0)
     return SeriesCurve(curve.closed, both)
 
 
@@ -60,7 +62,7 @@ def _risen(curve: SplineCurve, rise: float) -> SplineCurve:
     if curve.closed:
         damping = (66 + 52 * np.cos(2 * h) + 2 * np.cos(4 * h)) / 120
         height = rise / damping * np.cos(2 * centre)
-        height[-DEGREE:] = height[:DEGREE]
+        height = height[np.arange(len(height)) % curve.pieces]
     else:
         height = rise * (2 * (centre**2 - h**2 / 2) / np.pi**2 - 1)
     return SplineCurve(curve.closed, height[:, None].astype(np.float64))

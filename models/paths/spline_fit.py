@@ -34,14 +34,14 @@ STEP = 1e-4  # [m], arc length between two points of a line, unless it is long
 MOST_STEPS = 40_000  # of a line
 CUSP = float(np.cos(np.deg2rad(110)))  # cosine of the turn from which a corner is a cusp
 CAP = (6e-4, 1.2e-3)  # [m], least and largest radius of the half circle in the place of a cusp
-TAPER = 8  # length on which a line makes room for this half circle, in radii
+TAPER = 8  # length along which a line makes room for this half circle, in radii
 QUICK = 0.314  # [m/s], speed on straight lines: that of the usual circle
 HASTE = 1.5  # factor of `QUICK` where the pen is up
 TURNING = 2.0  # [m/s²], acceleration in bends and along the path: that of the usual circle
 SWING = 30.0  # [rad/s], of the tangent in bends; a held arm keeps a bend up to 2 √K1, usually 40
 SLOW = 0.05  # least speed as a share of `QUICK`, so that σ' is nowhere 0
 AT_ENDS = 0.3  # the same at the ends of an open path
-EASING = 2e-3  # [m], width of the smoothing of the speed
+EASING = 2e-3  # [m], over which bends are averaged, and the speed is smoothed
 CLOSE = 0.0025  # deviation at which pieces suffice, as a share of the drawing's size
 FIRST_PIECES = 24
 DENSITY = 12  # points on each piece
@@ -95,7 +95,7 @@ def spline_through(strokes: Sequence[Array], closed: bool = False) -> SplineCurv
 
 
 def _cleaned(strokes: Sequence[Array], closed: bool) -> list[Array]:
-    """The strokes without points that coincide, and those that are more than a point.
+    """The strokes without points that coincide; those that are a single point are left out.
 
     A closed one ends with its first point.
 
@@ -285,10 +285,9 @@ def _bends(line: Line) -> Array:
 
     Over less, a circle of straight lines would have sharp bends.
     """
-    steps = np.linalg.norm(np.diff(line.points, axis=0), axis=1)
     along = np.diff(line.points, axis=0)
     angle = np.unwrap(np.arctan2(along[:, 1], along[:, 0]))
-    s = np.concatenate([[0.0], np.cumsum(steps)])
+    s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(along, axis=1))])
     middle = (s[1:] + s[:-1]) / 2
     if line.closed:
         turn = angle[-1] - angle[0]
@@ -391,7 +390,7 @@ def _compared(curve: SplineCurve, lines: list[Array]) -> SplineCurve:
     dense = np.vstack([_even(line)[0] for line in lines])
     theta = curve.sample(max(4 * curve.grid, int(2 * curve.length() / STEP)))
     seen = curve.at(theta[curve.draws(theta)])
-    apart = KDTree(dense).query(seen)[0], KDTree(seen).query(dense)[0]
+    distances = KDTree(dense).query(seen)[0], KDTree(seen).query(dense)[0]
     thin = sum(len(line) for line in lines) // DENSE + 1
     given = np.vstack([line[::thin] for line in lines])
-    return replace(curve, deviation=float(np.concatenate(apart).max()), given=given)
+    return replace(curve, deviation=float(np.concatenate(distances).max()), given=given)

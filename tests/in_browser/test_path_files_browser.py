@@ -99,7 +99,9 @@ def test_a_drawing_is_brought_to_the_page_its_line_pressed_and_its_size_changed(
 def test_what_would_help_is_pressed_and_helps(tab: Tab) -> None:
     editor = tab.simulation.editor
     tab.page.evaluate(GIVE, ["paste", "G0 X0 Y0\nG1 X30\nY30\nX0\nY0\n"])
-    tab.page.get_by_text("Red is your drawing").wait_for(timeout=1e3 * WAIT)
+    tab.page.get_by_text("Your drawing is shown in red").wait_for(timeout=1e3 * WAIT)
     tab.page.get_by_role("button", name="Round the corners to").click()
     wait_for(lambda: not editor.faults and editor.design.name == "drawn", WAIT)
-    tab.page.get_by_text("Red is your drawing").wait_for(state="detached", timeout=1e3 * WAIT)
+    tab.page.get_by_text("Your drawing is shown in red").wait_for(
+        state="detached", timeout=1e3 * WAIT
+    )

@@ -25,7 +25,7 @@ from onpath.models.systems.robots import Robot
 def speed_plan(robot: Robot, parameters: Parameters, curve: Curve) -> Array:
     """1 and the coefficients of `fastest_speed`; nothing if the torques have no limit.
 
-    Nor is there any on a drawing, which has more bends than the polynomial has coefficients.
+    On a drawing, too, there is nothing: it has more bends than the plan has coefficients.
     """
     if parameters.torque_limit == 0 or isinstance(curve, SplineCurve):
         return np.zeros(0)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -9,6 +11,7 @@ from hypothesis import strategies as st
 from scipy.interpolate import BSpline
 
 from onpath.models.arrays import Array
+from onpath.models.paths.curve_blend import blend
 from onpath.models.paths.curve_data import curve_from
 from onpath.models.paths.curves import PERIOD, circle
 from onpath.models.paths.distance import closest_parameter, path_distance
@@ -111,3 +114,13 @@ def test_a_saddle_over_a_spline_rises_as_over_a_series(closed: bool) -> None:
 def test_what_is_no_spline_is_refused(closed: bool, points: Array) -> None:
     with pytest.raises(ValueError, match="points: "):
         SplineCurve(closed, points)
+
+
+@given(splines(), st.floats(0.1, 20.0), st.floats(-0.02, 0.02))
+def test_a_rise_and_a_blend_keep_how_a_drawing_is_passed(
+    curve: SplineCurve, duration: float, rise: float
+) -> None:
+    drawing = replace(curve, duration=duration, raised=((-1.0, 0.5),))
+    for made in (saddle(drawing, rise), blend(curve, drawing, 0.5)):
+        assert isinstance(made, SplineCurve)
+        assert made.duration == duration and made.raised == drawing.raised
