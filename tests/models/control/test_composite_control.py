@@ -86,7 +86,7 @@ def following(q: ca.SX, v: ca.SX, output: VirtualOutput, speed: ca.SX) -> ca.SX:
         memory={},
         plan=none,
     )
-    ellipse = LocalCurve(zero, none, ca.SX([1, 0, 0]), none, none)
+    ellipse = LocalCurve(zero, none, ca.SX(ca.vertcat(1, 0, 0)), none, none)
     view = View(
         system=SYSTEM,
         q=q,
