@@ -39,6 +39,7 @@ ORDER = [
     "models.closed_loop",
     "models.control",
     "models.systems",
+    "models.robot_files",
     "models.paths",
     "models",
     "assets",

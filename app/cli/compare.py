@@ -17,8 +17,8 @@ from onpath.app.common.atomic_file import check_file, check_plot, whole_file
 from onpath.app.exports.summary_text import STOPPED, finite
 
 if TYPE_CHECKING:
+    from onpath.models.robot_files.guesses import Guess
     from onpath.models.studies.comparison import Contest, Outcome
-    from onpath.models.systems.guesses import Guess
 
     Results = dict[tuple[str, str], list[Outcome]]
 

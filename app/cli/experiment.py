@@ -19,7 +19,7 @@ from onpath.app.common.atomic_file import check_file, check_plot, whole_file
 from onpath.app.exports.summary_text import finite, summary_lines
 
 if TYPE_CHECKING:
-    from onpath.models.systems.guesses import Guess
+    from onpath.models.robot_files.guesses import Guess
 
 
 @dataclass(frozen=True)

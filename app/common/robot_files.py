@@ -9,9 +9,9 @@ from pathlib import Path
 
 from onpath.app.common.announced import announced
 from onpath.models.errors import Message
+from onpath.models.robot_files.file_chain import Options
 from onpath.models.systems.catalogue import add_robot
 from onpath.models.systems.chain_robot import chain_entry
-from onpath.models.systems.file_chain import Options
 from onpath.models.systems.guessed_numbers import told_guess
 from onpath.models.systems.rigid_chain import ChainSource
 from onpath.models.systems.robot_file import read_robot

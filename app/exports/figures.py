@@ -14,9 +14,9 @@ from matplotlib.figure import Figure
 from onpath.app.common.palette import Colour, of_law
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.closed_loop.trajectory import Trajectory
+from onpath.models.robot_files.guesses import Guess
 from onpath.models.studies.experiments import Experiment
 from onpath.models.systems.guessed_numbers import with_mark
-from onpath.models.systems.guesses import Guess
 
 EXTRA = {"deflection": ("deflection of\nthe tip  [mm]", 1e3)}
 """Label and scale of each of `Robot.extras` that is drawn."""

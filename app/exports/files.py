@@ -15,8 +15,8 @@ from onpath.lessons.course import Course
 from onpath.lessons.progress import Progress
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.trajectory import write_csv
+from onpath.models.robot_files.guesses import Guess
 from onpath.models.systems.catalogue import ROBOTS
-from onpath.models.systems.guesses import Guess
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
 

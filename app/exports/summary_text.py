@@ -6,8 +6,8 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+from onpath.models.robot_files.guesses import Guess
 from onpath.models.systems.guessed_numbers import with_mark
-from onpath.models.systems.guesses import Guess
 
 ROWS: tuple[tuple[str, str, Callable[[float], str]], ...] = (
     ("max_distance_m", "max distance", lambda v: f"{v * 1e3:.2f} mm"),

@@ -8,8 +8,8 @@ from functools import lru_cache
 from typing import Any
 
 from onpath.lessons.words import Words
+from onpath.models.robot_files.guesses import Guess
 from onpath.models.systems.guessed_numbers import with_mark
-from onpath.models.systems.guesses import Guess
 
 MOST_LINES = 3  # of one robot in a row
 XI = ("xi", "xi_rate")

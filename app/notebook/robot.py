@@ -8,7 +8,7 @@ from pathlib import Path
 
 from onpath.app.common.robot_files import robot_of_file
 from onpath.app.common.robot_places import robot_place
-from onpath.models.systems.file_chain import Options
+from onpath.models.robot_files.file_chain import Options
 from onpath.models.systems.robots import RobotEntry
 
 

@@ -23,9 +23,9 @@ from onpath.models.closed_loop.trajectory import (
     write_csv,
 )
 from onpath.models.control.laws.own import law_title
+from onpath.models.robot_files.guesses import Guess
 from onpath.models.studies.experiments import Experiment, experiment_from, never_held, summary
 from onpath.models.systems.guessed_numbers import told_guesses
-from onpath.models.systems.guesses import Guess
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

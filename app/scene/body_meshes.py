@@ -17,9 +17,10 @@ import numpy as np
 from onpath.app.scene.meshes import Mesh
 from onpath.assets import asset_path
 from onpath.models.arrays import Array
-from onpath.models.systems.file_masses import INSTALL, THICKEST, THICKNESS, THINNEST
-from onpath.models.systems.rigid_chain import Body, Chain, Shape, frame_poses
-from onpath.models.systems.shape_solids import ROUND, solid_of
+from onpath.models.robot_files.chain import Body, Chain, Shape
+from onpath.models.robot_files.file_masses import INSTALL, THICKEST, THICKNESS, THINNEST
+from onpath.models.robot_files.shape_solids import ROUND, solid_of
+from onpath.models.systems.rigid_chain import frame_poses
 
 DRAWN_TRIANGLES = 1_500  # of a body, if the mesh can be simplified
 MOST_DRAWN = 6_000  # of a body, if it cannot

@@ -8,7 +8,7 @@ from pathlib import Path
 from onpath.app.exports.export_process import ExportError, ExportProcess
 from onpath.app.scene.body_meshes import is_own, keep_shapes, read_shapes
 from onpath.models.errors import Message
-from onpath.models.systems.rigid_chain import Chain
+from onpath.models.robot_files.chain import Chain
 
 log = logging.getLogger(__name__)
 LONGEST = 60.0  # [s] that reading the shapes of a robot may take

@@ -26,8 +26,8 @@ from onpath.app.server.robot_shapes import prepare_shapes
 from onpath.app.simulation.simulation_thread import SimulationThread
 from onpath.models.control.settable import with_values
 from onpath.models.errors import CodedError, Message
+from onpath.models.robot_files.xml_elements import shown
 from onpath.models.systems.catalogue import robot_named
-from onpath.models.systems.xml_elements import shown
 
 LONGEST = 60.0  # [s] that reading a file may take
 Post = Callable[[Command], None]

@@ -13,8 +13,8 @@ from onpath.lessons.words import Words
 from onpath.models.closed_loop.lab_settings import SETTINGS
 from onpath.models.control.laws.registry import LAWS, law_named
 from onpath.models.control.settable import specs
+from onpath.models.robot_files.guesses import Guess
 from onpath.models.systems.guessed_numbers import setting_with_mark
-from onpath.models.systems.guesses import Guess
 from onpath.models.systems.parameter_specs import Need, Spec
 from onpath.models.systems.parameters import Parameters
 

@@ -18,10 +18,10 @@ from onpath.app.view.robot_sketch import robot_sketch
 from onpath.assets import asset_path
 from onpath.lessons.labels import robot_label, robot_text
 from onpath.lessons.words import Words
+from onpath.models.robot_files.xml_elements import shown
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.guessed_numbers import guess_sentences
 from onpath.models.systems.robots import RobotEntry
-from onpath.models.systems.xml_elements import shown
 
 
 def robot_sheet(words: Words) -> RobotSheet:

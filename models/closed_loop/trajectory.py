@@ -15,8 +15,8 @@ from onpath.models.control.laws.registry import law_named
 from onpath.models.layout import Layout
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.distance import path_distance
+from onpath.models.robot_files.guesses import Guess
 from onpath.models.systems.guessed_numbers import with_mark
-from onpath.models.systems.guesses import Guess
 from onpath.models.systems.robots import Robot
 
 MEASURED = "measured"

@@ -41,6 +41,8 @@ import numpy as np
 from onpath.models.arrays import Array
 from onpath.models.errors import Message
 from onpath.models.paths.frames import LevelPlane, Plane
+from onpath.models.robot_files.chain import Chain
+from onpath.models.robot_files.xml_elements import shown
 from onpath.models.systems.drawing import Depths, Drawing, Point, Spot
 from onpath.models.systems.forces import Grip
 from onpath.models.systems.parameter_specs import (
@@ -52,7 +54,6 @@ from onpath.models.systems.parameter_specs import (
 )
 from onpath.models.systems.parameters import Parameters, own_parameters
 from onpath.models.systems.rigid_chain import (
-    Chain,
     ChainSource,
     bias_forces,
     chain_frames,
@@ -70,7 +71,6 @@ from onpath.models.systems.robots import (
     StopCondition,
 )
 from onpath.models.systems.system import MechanicalSystem, mechanical_system
-from onpath.models.systems.xml_elements import shown
 
 STEPS = (0.25, 0.5, 0.75, 1.0, 1.0, 1.0, 1.0)
 """Shares of the way from home to y, each with a step of Newton's method."""

@@ -9,9 +9,9 @@ import numpy as np
 
 from onpath.models.arrays import Array
 from onpath.models.errors import Message
-from onpath.models.systems.rigid_chain import Chain, Joint
+from onpath.models.robot_files.chain import Chain, Joint
+from onpath.models.robot_files.xml_elements import shown
 from onpath.models.systems.robots import Robot
-from onpath.models.systems.xml_elements import shown
 
 
 def stated(chain: Chain) -> Message | None:

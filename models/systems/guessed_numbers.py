@@ -8,7 +8,7 @@ from typing import Literal
 
 from onpath.assets.messages import DEFAULT
 from onpath.models.errors import Message
-from onpath.models.systems.guesses import Guess, GuessKind
+from onpath.models.robot_files.guesses import Guess, GuessKind
 
 Quantity = Literal["torque", "coupling", "limit", "end_point", "start"]
 """What numbers tell: of motors and weights, of how masses answer a force, of what motors can give,

@@ -10,14 +10,9 @@ import numpy as np
 
 from onpath.models.arrays import Array
 from onpath.models.paths.path_checks import LEAST_MARGIN
+from onpath.models.robot_files.chain import Chain
 from onpath.models.systems.drawing import Point
-from onpath.models.systems.rigid_chain import (
-    Chain,
-    chain_frames,
-    chain_inertias,
-    potential_energy,
-    tip_of,
-)
+from onpath.models.systems.rigid_chain import chain_frames, chain_inertias, potential_energy, tip_of
 from onpath.models.systems.robots import Robot
 from onpath.models.systems.rows import Rows
 

@@ -17,6 +17,12 @@ from onpath.assets import asset_path
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError, Message
 from onpath.models.paths.path_design import USUAL_RADIUS
+from onpath.models.robot_files.chain import Chain
+from onpath.models.robot_files.file_chain import FileChain, Options
+from onpath.models.robot_files.file_reading import read_file
+from onpath.models.robot_files.guesses import Guess
+from onpath.models.robot_files.urdf_file import read_urdf
+from onpath.models.robot_files.xml_elements import FileFault, file_bytes, root_of, shown
 from onpath.models.systems.chain_robot import (
     FASTEST_DECAY,
     MOST_STEPS,
@@ -26,9 +32,6 @@ from onpath.models.systems.chain_robot import (
 )
 from onpath.models.systems.drawing import Point
 from onpath.models.systems.efforts import stated
-from onpath.models.systems.file_chain import FileChain, Options
-from onpath.models.systems.file_reading import read_file
-from onpath.models.systems.guesses import Guess
 from onpath.models.systems.home_pose import (
     RULES,
     ChosenPose,
@@ -37,7 +40,6 @@ from onpath.models.systems.home_pose import (
     reachable_circle,
 )
 from onpath.models.systems.rigid_chain import (
-    Chain,
     ChainSource,
     chain_frames,
     chain_inertias,
@@ -46,8 +48,6 @@ from onpath.models.systems.rigid_chain import (
 )
 from onpath.models.systems.robots import RobotEntry
 from onpath.models.systems.rows import Rows
-from onpath.models.systems.urdf_file import read_urdf
-from onpath.models.systems.xml_elements import FileFault, file_bytes, root_of, shown
 
 POSES = 100  # random ones at which masses and friction are checked
 LEAST_CIRCLE = 0.015  # [m], of paths that must be possible

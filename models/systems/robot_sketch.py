@@ -9,8 +9,8 @@ from html import escape
 import numpy as np
 
 from onpath.models.arrays import Array
-from onpath.models.systems.rigid_chain import Joint
-from onpath.models.systems.xml_elements import shown
+from onpath.models.robot_files.chain import Joint
+from onpath.models.robot_files.xml_elements import shown
 
 WIDTH, HEIGHT = 320.0, 240.0
 MARGIN = 16.0

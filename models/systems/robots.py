@@ -16,12 +16,13 @@ from onpath.models.arrays import Array
 from onpath.models.errors import Message
 from onpath.models.paths.frames import Frame, Plane
 from onpath.models.paths.path_design import USUAL_RADIUS
+from onpath.models.robot_files.chain import Chain
+from onpath.models.robot_files.guesses import Guess
 from onpath.models.systems.drawing import Drawing
 from onpath.models.systems.forces import Grip
 from onpath.models.systems.guessed_numbers import guess_sentences
-from onpath.models.systems.guesses import Guess
 from onpath.models.systems.parameters import Parameters
-from onpath.models.systems.rigid_chain import Chain, ChainSource
+from onpath.models.systems.rigid_chain import ChainSource
 from onpath.models.systems.robot_sketch import described, sketch
 from onpath.models.systems.rows import Rows
 from onpath.models.systems.system import MechanicalSystem

@@ -12,9 +12,9 @@ from onpath.models.arrays import Array
 from onpath.models.closed_loop.trajectory import Trajectory
 from onpath.models.errors import CodedError
 from onpath.models.paths.curves import circle
+from onpath.models.robot_files.file_chain import Options
 from onpath.models.studies.experiments import on_path, run
 from onpath.models.systems.efforts import exceeded
-from onpath.models.systems.file_chain import Options
 from onpath.models.systems.home_pose import length_of
 from onpath.models.systems.robot_file import RobotFile, read_robot
 

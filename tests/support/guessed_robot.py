@@ -8,9 +8,9 @@ from contextlib import contextmanager
 from typing import get_args, get_type_hints
 
 from onpath.models.errors import Message
+from onpath.models.robot_files.guesses import Guess
 from onpath.models.systems.catalogue import ROBOTS, robot_named
 from onpath.models.systems.chain_robot import chain_entry
-from onpath.models.systems.guesses import Guess
 from onpath.models.systems.robots import RobotEntry
 
 KINDS: tuple[str, ...] = get_args(get_type_hints(Guess)["kind"])

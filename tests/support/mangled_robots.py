@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from onpath.assets import asset_path
 from onpath.models.errors import CodedError
-from onpath.models.systems.file_chain import Options
+from onpath.models.robot_files.file_chain import Options
 from onpath.models.systems.robot_file import read_robot
 from tests.support.some_chains import random_arm
 

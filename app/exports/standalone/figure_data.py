@@ -49,13 +49,13 @@ from onpath.models.control.sides import RIGHT, SIDES
 from onpath.models.paths.curve_faults import ambiguities
 from onpath.models.paths.curves import TERMS, Curve
 from onpath.models.paths.path_checks import POINT_CHECKS, SAMPLES
+from onpath.models.robot_files.xml_elements import shown
 from onpath.models.standalone.edit import OUTLINE, ROW
 from onpath.models.standalone.fit import FINE, PIECE
 from onpath.models.systems.efforts import efforts
 from onpath.models.systems.law_parameters import LEVEL_SET
 from onpath.models.systems.parameters import look_ahead_time, time_step
 from onpath.models.systems.robots import Robot
-from onpath.models.systems.xml_elements import shown
 
 
 def figure_numbers(figure: FigureChoice) -> dict[str, Any]:

@@ -32,11 +32,11 @@ from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curve_fit import closed_through, control_points, open_through
 from onpath.models.paths.curves import Curve, from_terms, terms_of
 from onpath.models.paths.path_design import MOST_POINTS, REACH, PathDesign, presets
+from onpath.models.robot_files.xml_elements import shown
 from onpath.models.systems.catalogue import ROBOTS, RobotEntry
 from onpath.models.systems.parameter_specs import NOTHING, unknown_name
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
-from onpath.models.systems.xml_elements import shown
 
 _FROM_FILE = re.compile(r"[a-z0-9_]+_[0-9a-f]{8}")  # the name of a `RobotFile`
 DRAWN_POINTS = {True: 10, False: 6}  # control points of closed and open strokes, as in `drawn`

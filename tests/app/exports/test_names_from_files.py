@@ -19,12 +19,12 @@ from onpath.app.exports.arena_page import Contents, arena_page, markdown
 from onpath.app.exports.figures import experiment_figure
 from onpath.app.view.robots import robot_card
 from onpath.lessons.words import Words
+from onpath.models.robot_files.file_chain import guessed_tip
+from onpath.models.robot_files.xml_elements import shown
 from onpath.models.systems.catalogue import robot_named
 from onpath.models.systems.chain_robot import chain_entry
 from onpath.models.systems.efforts import exceeded
-from onpath.models.systems.file_chain import guessed_tip
 from onpath.models.systems.robots import RobotEntry
-from onpath.models.systems.xml_elements import shown
 from tests.support.guessed_robot import in_catalogue
 
 LONG = 2000  # characters of a text with a few names

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from onpath.app.exports.export_process import ExportProcess
+from onpath.models.robot_files.file_chain import Options
 from onpath.models.systems.catalogue import ROBOTS, add_robot
-from onpath.models.systems.file_chain import Options
 from onpath.models.systems.robot_file import read_robot
 from tests.support.robot_files import PLANAR, urdf
 

@@ -17,11 +17,11 @@ from onpath.app.lab.setups.share_code import decode, encode
 from onpath.app.lab.setups.stored import to_data
 from onpath.app.storage.lab_state import LabState, put_back
 from onpath.models.errors import CodedError
+from onpath.models.robot_files.file_chain import Options
+from onpath.models.robot_files.xml_elements import shown
 from onpath.models.systems.catalogue import ROBOTS
-from onpath.models.systems.file_chain import Options
 from onpath.models.systems.robot_file import read_robot
 from onpath.models.systems.robots import RobotEntry
-from onpath.models.systems.xml_elements import shown
 from tests.support.lab import loop_cache
 from tests.support.robot_files import PLANAR, urdf
 

@@ -20,11 +20,12 @@ from onpath.app.scene.body_meshes import (
 )
 from onpath.app.server.robot_shapes import prepare_shapes
 from onpath.assets import asset_path
-from onpath.models.systems.file_chain import Options
-from onpath.models.systems.rigid_chain import Chain, chain_frames, frame_poses, tip_of
+from onpath.models.robot_files.chain import Chain
+from onpath.models.robot_files.file_chain import Options
+from onpath.models.robot_files.urdf_file import read_urdf
+from onpath.models.robot_files.xml_elements import root_of
+from onpath.models.systems.rigid_chain import chain_frames, frame_poses, tip_of
 from onpath.models.systems.robot_file import read_robot
-from onpath.models.systems.urdf_file import read_urdf
-from onpath.models.systems.xml_elements import root_of
 from tests.support.robot_files import PLANAR, urdf
 from tests.support.some_chains import random_arm
 

@@ -14,8 +14,8 @@ from onpath.app.server.lab_server import LabServer
 from onpath.app.server.server_options import ServerOptions
 from onpath.app.view.robots import robot_sheet
 from onpath.lessons.words import ENGLISH
+from onpath.models.robot_files.file_chain import Options
 from onpath.models.systems.catalogue import ROBOTS
-from onpath.models.systems.file_chain import Options
 from tests.support.robot_files import PLANAR, urdf
 from tests.support.student import Student
 

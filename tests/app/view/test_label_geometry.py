@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 
 from onpath.app.view.label_geometry import IN_FRONT, SIDES, axes_of, label_function
 from onpath.models.arrays import Array
+from onpath.models.robot_files.file_chain import Options
 from onpath.models.systems.catalogue import ROBOTS
-from onpath.models.systems.file_chain import Options
 from onpath.models.systems.rigid_chain import frame_poses
 from onpath.models.systems.robot_file import read_robot
 from onpath.models.systems.robots import Robot, RobotEntry

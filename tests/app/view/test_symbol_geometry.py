@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from onpath.app.lab.snapshots.snapshot import Counts, Motion, PageKey, PathSnapshot
 from onpath.app.view.symbol_geometry import AT_JOINTS, has_meaning, symbol_lines
 from onpath.models.arrays import Array
+from onpath.models.robot_files.file_chain import Options
 from onpath.models.systems.catalogue import ROBOTS
-from onpath.models.systems.file_chain import Options
 from onpath.models.systems.rigid_chain import frame_poses
 from onpath.models.systems.robot_file import read_robot
 from onpath.models.systems.robots import Robot, RobotEntry

@@ -47,9 +47,9 @@ from onpath.models.errors import CodedError, Message, message_of
 from onpath.models.paths.curve_faults import ambiguities, curve_faults
 from onpath.models.paths.curves import circle
 from onpath.models.paths.path_design import presets
+from onpath.models.robot_files.file_chain import some_names
 from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE, ROBOTS, found_robots
 from onpath.models.systems.chain_robot import LimitedSpatialParameters
-from onpath.models.systems.file_chain import some_names
 from onpath.models.systems.five_bar_parameters import FiveBarParameters
 from onpath.models.systems.five_bar_robot import RIGID_FIVE_BAR
 from onpath.models.systems.flexible_robot import BENT, BENT_OR_UNSTABLE, UNSTABLE
@@ -378,7 +378,7 @@ def test_no_language_translates_anything_that_does_not_exist(language: str) -> N
 
 # Errors and reasons have a code in every language.
 
-HANDED_ON = {"models/errors.py", "models/systems/file_chain.py"}
+HANDED_ON = {"models/errors.py", "models/robot_files/file_chain.py"}
 """Modules that make messages of codes that others have chosen."""
 
 

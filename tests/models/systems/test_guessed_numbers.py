@@ -10,6 +10,7 @@ from onpath.app.exports.figures import PANELS
 from onpath.app.exports.summary_text import ROWS as SUMMARY
 from onpath.models.closed_loop.trajectory import header, without_mark
 from onpath.models.control.settable import specs
+from onpath.models.robot_files.guesses import Guess
 from onpath.models.studies.comparison import MEASURES
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.guessed_numbers import (
@@ -23,7 +24,6 @@ from onpath.models.systems.guessed_numbers import (
     told_guesses,
     with_mark,
 )
-from onpath.models.systems.guesses import Guess
 from tests.support.guessed_robot import KINDS, guess, guessed_robot
 
 guesses = st.lists(st.sampled_from(KINDS)).map(lambda kinds: tuple(map(guess, kinds)))

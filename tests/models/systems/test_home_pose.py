@@ -12,10 +12,10 @@ import pytest
 from onpath.models.errors import CodedError
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.path_design import USUAL_RADIUS, presets
+from onpath.models.robot_files.file_chain import Options
 from onpath.models.studies.experiments import experiments
 from onpath.models.studies.path_text import curve_from_text
 from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
-from onpath.models.systems.file_chain import Options
 from onpath.models.systems.home_pose import length_of
 from onpath.models.systems.robot_file import RobotFile, read_robot
 from tests.support.robot_files import HEAVY, PLANAR, SEVEN, Link, urdf

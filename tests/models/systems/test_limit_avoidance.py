@@ -17,10 +17,10 @@ from onpath.models.closed_loop.trajectory import Trajectory
 from onpath.models.control.linearization import linearization
 from onpath.models.control.settable import specs, with_values
 from onpath.models.paths.curves import circle
+from onpath.models.robot_files.file_chain import Options
 from onpath.models.studies.arena import run_under
 from onpath.models.studies.experiments import on_path
 from onpath.models.systems.catalogue import ROBOTS
-from onpath.models.systems.file_chain import Options
 from onpath.models.systems.robot_file import read_robot
 from onpath.models.systems.robots import RobotEntry
 from tests.support.robot_files import SEVEN, urdf

@@ -25,9 +25,9 @@ from onpath.models.closed_loop.translated_loop import translate_loop
 from onpath.models.control.settable import with_values
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curves import circle
+from onpath.models.robot_files.file_chain import Options
 from onpath.models.studies.experiments import on_path, run
 from onpath.models.systems.contract import faults_of
-from onpath.models.systems.file_chain import Options
 from onpath.models.systems.robot_file import read_robot
 from onpath.models.systems.robots import RobotEntry
 from onpath.models.systems.system import GRAVITY

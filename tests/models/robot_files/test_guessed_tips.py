@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from onpath.models.systems.file_chain import MOST_JOINTS, FileChain, Options
-from onpath.models.systems.tip_guess import MOST_TIPS
-from onpath.models.systems.urdf_file import read_urdf
-from onpath.models.systems.xml_elements import root_of
+from onpath.models.robot_files.file_chain import MOST_JOINTS, FileChain, Options
+from onpath.models.robot_files.tip_guess import MOST_TIPS
+from onpath.models.robot_files.urdf_file import read_urdf
+from onpath.models.robot_files.xml_elements import root_of
 from tests.support.robot_files import PLANAR, urdf
 
 MASS = '<inertial><mass value="0.5"/><inertia ixx="0.01" iyy="0.01" izz="0.01"/></inertial>'

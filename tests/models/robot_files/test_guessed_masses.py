@@ -15,13 +15,14 @@ from hypothesis import strategies as st
 
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
-from onpath.models.systems import file_masses
-from onpath.models.systems.file_chain import FileChain, Options
-from onpath.models.systems.file_masses import repaired
-from onpath.models.systems.hull_process import LIBRARY, Hull
+from onpath.models.robot_files import file_masses
+from onpath.models.robot_files.chain import Chain, Shape
+from onpath.models.robot_files.file_chain import FileChain, Options
+from onpath.models.robot_files.file_masses import repaired
+from onpath.models.robot_files.hull_process import LIBRARY, Hull
+from onpath.models.robot_files.urdf_file import read_urdf
+from onpath.models.robot_files.xml_elements import root_of, safe_name
 from onpath.models.systems.rigid_chain import (
-    Chain,
-    Shape,
     bias_forces,
     chain_frames,
     chain_inertias,
@@ -30,8 +31,6 @@ from onpath.models.systems.rigid_chain import (
 )
 from onpath.models.systems.robot_file import read_robot
 from onpath.models.systems.system import GRAVITY
-from onpath.models.systems.urdf_file import read_urdf
-from onpath.models.systems.xml_elements import root_of, safe_name
 from tests.support.random_trees import Tree, random_trees, tree_urdf
 from tests.support.robot_files import PLANAR, urdf
 

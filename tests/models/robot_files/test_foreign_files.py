@@ -13,11 +13,11 @@ from typing import Any
 import pytest
 
 from onpath.models.errors import CodedError
-from onpath.models.systems import limited_process
-from onpath.models.systems.file_chain import Options
-from onpath.models.systems.file_reading import read_file
-from onpath.models.systems.mesh_folders import LEVELS, MeshFolders
-from onpath.models.systems.xml_elements import FileFault
+from onpath.models.robot_files import limited_process
+from onpath.models.robot_files.file_chain import Options
+from onpath.models.robot_files.file_reading import read_file
+from onpath.models.robot_files.mesh_folders import LEVELS, MeshFolders
+from onpath.models.robot_files.xml_elements import FileFault
 from tests.support.robot_files import PLANAR, urdf
 
 ARM = urdf("arm", PLANAR)
@@ -258,7 +258,7 @@ def test_code_in_a_file_can_do_nothing_to_the_system(tmp_path: Path, attempt: st
     program = (
         "import socket, subprocess, ctypes\n"
         "from pathlib import Path\n"
-        "from onpath.models.systems.xacro_process import guard\n"
+        "from onpath.models.robot_files.xacro_process import guard\n"
         f"guard((Path({str(robot)!r}),))\n"
         f"assert open({str(robot / 'own.txt')!r}).read()\n"
         f"try:\n    {code}\nexcept PermissionError:\n    print('refused')\n"

@@ -20,10 +20,10 @@ import numpy as np
 
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError, Message
-from onpath.models.systems.file_chain import Group, Options, aligned, some_names
-from onpath.models.systems.guesses import Guess
-from onpath.models.systems.hull_process import LIBRARY, Hull, hulls_of
-from onpath.models.systems.rigid_chain import Shape
+from onpath.models.robot_files.chain import Shape
+from onpath.models.robot_files.file_chain import Group, Options, aligned, some_names
+from onpath.models.robot_files.guesses import Guess
+from onpath.models.robot_files.hull_process import LIBRARY, Hull, hulls_of
 
 DENSITY = 1000.0  # [kg/m³]
 NO_MASS = 1e-6  # [kg], below which a mass is a dummy

@@ -14,9 +14,9 @@ import msgspec
 import numpy as np
 
 from onpath.models.arrays import Array
-from onpath.models.systems.limited_process import ProcessEnded, answer_of, serve
-from onpath.models.systems.rigid_chain import Shape
-from onpath.models.systems.shape_solids import solid_of
+from onpath.models.robot_files.chain import Shape
+from onpath.models.robot_files.limited_process import ProcessEnded, answer_of, serve
+from onpath.models.robot_files.shape_solids import solid_of
 
 MOST_BYTES = 200_000_000  # of all meshes
 MOST_TRIANGLES = 2_000_000  # of all meshes

@@ -14,8 +14,8 @@ from pathlib import Path, PurePosixPath
 from xml.sax.saxutils import quoteattr
 
 from onpath.models.errors import Message
-from onpath.models.systems.mesh_folders import MeshFolders
-from onpath.models.systems.xml_elements import LARGEST_NUMBER, Element, FileFault, shown
+from onpath.models.robot_files.mesh_folders import MeshFolders
+from onpath.models.robot_files.xml_elements import LARGEST_NUMBER, Element, FileFault, shown
 
 MESHES = (".stl", ".obj", ".msh")
 MOST_MESH_BYTES = 200_000_000  # of all meshes of a file

@@ -19,8 +19,8 @@ import msgspec
 import numpy as np
 
 from onpath.models.errors import CodedError
-from onpath.models.systems.limited_process import SECONDS, ProcessEnded, answer_of, serve
-from onpath.models.systems.xml_elements import shown
+from onpath.models.robot_files.limited_process import SECONDS, ProcessEnded, answer_of, serve
+from onpath.models.robot_files.xml_elements import shown
 
 NAMED = {"body": "nbody", "joint": "njnt", "site": "nsite", "key": "nkey"}
 """Kinds of elements whose names are read, and what counts them."""

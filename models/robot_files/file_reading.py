@@ -8,12 +8,12 @@ from dataclasses import replace
 from pathlib import Path
 
 from onpath.models.errors import Message
-from onpath.models.systems.file_chain import FileChain, Options
-from onpath.models.systems.mesh_folders import MeshFolders
-from onpath.models.systems.mjcf_file import read_mjcf
-from onpath.models.systems.urdf_file import read_urdf
-from onpath.models.systems.xacro_process import expanded
-from onpath.models.systems.xml_elements import (
+from onpath.models.robot_files.file_chain import FileChain, Options
+from onpath.models.robot_files.mesh_folders import MeshFolders
+from onpath.models.robot_files.mjcf_file import read_mjcf
+from onpath.models.robot_files.urdf_file import read_urdf
+from onpath.models.robot_files.xacro_process import expanded
+from onpath.models.robot_files.xml_elements import (
     MOST_ELEMENTS,
     Element,
     FileFault,

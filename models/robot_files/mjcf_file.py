@@ -15,7 +15,8 @@ import numpy as np
 
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError, Message
-from onpath.models.systems.file_chain import (
+from onpath.models.robot_files.chain import Chain, Joint, Shape
+from onpath.models.robot_files.file_chain import (
     MOST_JOINTS,
     FileChain,
     Group,
@@ -28,12 +29,11 @@ from onpath.models.systems.file_chain import (
     locked_guesses,
     turn,
 )
-from onpath.models.systems.guesses import Guess
-from onpath.models.systems.mjcf_check import all_elements, checked_model
-from onpath.models.systems.mujoco_process import read_model
-from onpath.models.systems.rigid_chain import Chain, Joint, Shape
-from onpath.models.systems.tip_guess import TipPlace, suggested_tips, surplus_joints
-from onpath.models.systems.xml_elements import Element, FileFault, safe_name, shown
+from onpath.models.robot_files.guesses import Guess
+from onpath.models.robot_files.mjcf_check import all_elements, checked_model
+from onpath.models.robot_files.mujoco_process import read_model
+from onpath.models.robot_files.tip_guess import TipPlace, suggested_tips, surplus_joints
+from onpath.models.robot_files.xml_elements import Element, FileFault, safe_name, shown
 
 FREE, BALL, SLIDE = 0, 1, 2  # types of joints in MuJoCo; 3 turns
 SPHERE, CAPSULE, ELLIPSOID, CYLINDER, BOX, MESH = range(2, 8)  # types of geoms

@@ -11,12 +11,12 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from onpath.models.errors import CodedError
-from onpath.models.systems.file_chain import Options
-from onpath.models.systems.mjcf_check import LEFT_OUT, PASSED, REFUSED, checked_model
-from onpath.models.systems.mjcf_file import read_mjcf
-from onpath.models.systems.mujoco_process import read_model
+from onpath.models.robot_files.file_chain import Options
+from onpath.models.robot_files.mjcf_check import LEFT_OUT, PASSED, REFUSED, checked_model
+from onpath.models.robot_files.mjcf_file import read_mjcf
+from onpath.models.robot_files.mujoco_process import read_model
+from onpath.models.robot_files.xml_elements import FileFault, root_of
 from onpath.models.systems.robot_file import read_robot
-from onpath.models.systems.xml_elements import FileFault, root_of
 from tests.support.mangled_robots import ROBOTS, mangled, mjcf_seeds, robot_or_line
 
 ARM = (ROBOTS / "gripper_arm.xml").read_text()

@@ -16,7 +16,8 @@ import numpy as np
 
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError, Message
-from onpath.models.systems.file_chain import (
+from onpath.models.robot_files.chain import Chain, Joint, Shape
+from onpath.models.robot_files.file_chain import (
     MOST_JOINTS,
     MOST_NAMES,
     FileChain,
@@ -32,12 +33,11 @@ from onpath.models.systems.file_chain import (
     some_names,
     turn,
 )
-from onpath.models.systems.file_masses import LinkMass, Masses, add_masses, is_dummy
-from onpath.models.systems.guesses import Guess
-from onpath.models.systems.mesh_folders import MeshFolders
-from onpath.models.systems.rigid_chain import Chain, Joint, Shape
-from onpath.models.systems.tip_guess import TipPlace, suggested_tips, surplus_joints
-from onpath.models.systems.xml_elements import Element, FileFault, shown
+from onpath.models.robot_files.file_masses import LinkMass, Masses, add_masses, is_dummy
+from onpath.models.robot_files.guesses import Guess
+from onpath.models.robot_files.mesh_folders import MeshFolders
+from onpath.models.robot_files.tip_guess import TipPlace, suggested_tips, surplus_joints
+from onpath.models.robot_files.xml_elements import Element, FileFault, shown
 
 MOST_LINKS = 1000
 NO_LIMIT = 1e6  # [rad], [m] or [N m], from which on a limit is none

@@ -14,11 +14,11 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from onpath.models.errors import CodedError, Message
-from onpath.models.systems.file_chain import Options
-from onpath.models.systems.rigid_chain import Chain
+from onpath.models.robot_files.chain import Chain
+from onpath.models.robot_files.file_chain import Options
+from onpath.models.robot_files.urdf_file import read_urdf
+from onpath.models.robot_files.xml_elements import FileFault, root_of, safe_name
 from onpath.models.systems.robot_file import RobotFile, read_robot
-from onpath.models.systems.urdf_file import read_urdf
-from onpath.models.systems.xml_elements import FileFault, root_of, safe_name
 from tests.support.mangled_robots import mangled, robot_or_line, urdf_seeds
 from tests.support.robot_files import PLANAR, urdf
 

@@ -12,9 +12,9 @@ import numpy as np
 
 from onpath.models.arrays import Array
 from onpath.models.errors import Argument, CodedError, Message
-from onpath.models.systems.guesses import Guess
-from onpath.models.systems.rigid_chain import Body, Chain, Joint, Shape
-from onpath.models.systems.xml_elements import shown
+from onpath.models.robot_files.chain import Body, Chain, Joint, Shape
+from onpath.models.robot_files.guesses import Guess
+from onpath.models.robot_files.xml_elements import shown
 
 MOST_JOINTS = 8  # that move on the way to the tip
 MOST_NAMES = 8  # of links or joints in a message

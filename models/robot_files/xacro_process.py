@@ -19,9 +19,9 @@ from typing import Any
 import msgspec
 
 from onpath.models.errors import CodedError
-from onpath.models.systems.limited_process import ProcessEnded, answer_of, serve
-from onpath.models.systems.mesh_folders import MeshFolders
-from onpath.models.systems.xml_elements import LARGEST_FILE, shown
+from onpath.models.robot_files.limited_process import ProcessEnded, answer_of, serve
+from onpath.models.robot_files.mesh_folders import MeshFolders
+from onpath.models.robot_files.xml_elements import LARGEST_FILE, shown
 
 HARMLESS = (
     *("import", "compile", "exec", "open", "os.listdir", "os.scandir", "marshal.loads"),

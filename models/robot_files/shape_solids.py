@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from onpath.models.systems.rigid_chain import Shape
+from onpath.models.robot_files.chain import Shape
 
 MOST_TRIANGLES = 500_000  # of a mesh in a file
 LARGEST_SHAPE = 100.0  # [m]

@@ -1,0 +1,1 @@
+"""Robots from URDF, xacro and MJCF files, read to chains of bodies."""
