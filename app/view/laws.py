@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from onpath.app.channel.sheet_messages import LawDescription, LawSheet, NameMeaning
 from onpath.lessons.sides import law_label, law_text
 from onpath.lessons.words import Words
-from onpath.models.closed_loop.kernel import INTEGRAL_REACH
+from onpath.models.closed_loop.controller_tick import INTEGRAL_REACH
 from onpath.models.control.laws.expressions import FUNCTIONS, LARGEST_EXPONENT
 from onpath.models.control.laws.own import MEANINGS, SPACE_MEANINGS, NamedValue
 from onpath.models.control.laws.registry import LAWS

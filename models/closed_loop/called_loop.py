@@ -18,7 +18,8 @@ from typing_extensions import override
 
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.buffered import Buffered
-from onpath.models.closed_loop.kernel import Kernel, wanted_torque
+from onpath.models.closed_loop.controller_tick import wanted_torque
+from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.law_view import beam_estimate, law_view
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loop_vectors import GAINS, kept_layout, settings_layout
@@ -206,11 +207,11 @@ def _seen(robot: Robot, kind: Kind, law: Law) -> Callable[..., Now]:
     settings_symbol, settings = settings_layout(system, kind).symbols("settings")
     frame = robot.frame if not kind.space or robot.frame.space is None else robot.frame.space
     values, h = ca.SX.sym("values", kind.value_rows, 1), settings["look_ahead"]
-    q, v, _ = measure(system, kind, state, settings)
-    q, v = look_ahead(system, state, settings, q, v, h)
+    measured = measure(system, kind, state, settings)[:2]
+    q, v = look_ahead(system, state, settings, *measured, h)
     beam = beam_estimate(system, state, settings, q, v, h) if kind.output == "composite" else None
     plane = frame.at(settings["plane"])
-    view = law_view(system, plane, kind, law, state, settings, values, (q, v), beam)
+    view = law_view(system, plane, kind, law, state, settings, values, measured, (q, v), beam)
     output, gains, limit = view.output, view.gains, settings["torque_limit"]
     command = ca.SX.sym("command", MOST)
     clock = replace(view.clock, memory={CALLED: command})

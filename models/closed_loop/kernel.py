@@ -11,17 +11,12 @@ tick, and its torque is held in between.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
 
 import casadi as ca
 
-from onpath.models.closed_loop.delay import driven
+from onpath.models.closed_loop.controller_tick import decide, integral_used
 from onpath.models.closed_loop.law_view import (
-    beam_estimate,
     clock_at,
-    commanded,
-    interval,
-    law_view,
     measured_output,
     predicted,
 )
@@ -34,25 +29,19 @@ from onpath.models.closed_loop.loop_vectors import (
     settings_layout,
 )
 from onpath.models.closed_loop.observer import carried_on
-from onpath.models.closed_loop.plant_tick import held_torque, move
-from onpath.models.closed_loop.reference_speed import next_speed, wanted_speed
-from onpath.models.closed_loop.sensing import logged, look_ahead, measure, remembered
-from onpath.models.control import composite_control as composite
-from onpath.models.control.laws.law import Along, ControlAction, Law, View
+from onpath.models.closed_loop.plant_tick import move
+from onpath.models.closed_loop.reference_speed import wanted_speed
+from onpath.models.closed_loop.sensing import logged, measure
+from onpath.models.control.laws.law import Law
 from onpath.models.control.laws.law_error import law_error
 from onpath.models.control.laws.own import is_text
-from onpath.models.control.laws.references import clock_rate
 from onpath.models.control.laws.registry import law_named
-from onpath.models.control.linearization import admissible_along, linearization
 from onpath.models.errors import CodedError
-from onpath.models.layout import Fields
 from onpath.models.paths.frames import Frame
 from onpath.models.paths.projection import basis, spline_basis, window, windowed
 from onpath.models.systems import forces
 from onpath.models.systems.system import MechanicalSystem
 
-INTEGRAL_REACH = 0.01  # largest ρ, [m]
-STRAIGHT = 1e-9  # turn per radian of θ, below which a path does not bend
 DEFAULT_GRIP = forces.Grip()
 
 
@@ -228,152 +217,19 @@ def _advance(
     settings_symbol, settings = settings_layout(system, kind).symbols("settings")
     plane = frame.at(settings["plane"])
     values = ca.SX.sym("values", kind.value_rows, 1 if law.reference is None else 2)
-    measured_q, measured_v, reading = measure(system, kind, state, settings)
-    measured, h = (measured_q, measured_v), settings["look_ahead"]
-    q, v = look_ahead(system, state, settings, measured_q, measured_v, h)
-    beam = beam_estimate(system, state, settings, q, v, h) if kind.output == "composite" else None
-    view = law_view(system, plane, kind, law, state, settings, values, (q, v), beam)
-    command = commanded(law, view)
-    wanted, memory = wanted_torque(kind, state, settings, view, command, beam)
-    fresh, acts, saturated = held_torque(system, kind, state, settings, wanted)
-    drive = driven(kind, state, settings, fresh, acts)
+    q, v, reading = measure(system, kind, state, settings)
+    decided = decide(system, plane, kind, law, state, settings, values, (q, v), reading)
+    drive, command = decided.drive, decided.command
     tip, force, moved = move(system, kind, state, settings, drive.parts, plant)
-    summed = _integral(kind, law, state, settings, acts, saturated, command)
     estimate = {"estimate": moved["q"], "estimate_rate": moved["v"]}
     if kind.observer:
-        estimate = carried_on(system, kind, settings, measured, drive.parts, plant)
-    after = {
-        **moved,
-        **estimate,
-        **_next_places(kind, law, state, settings, view, command),
-        "integral": bounded(summed, settings, view, command),
-        **remembered(kind, state, acts, reading, measured_v[: system.joints]),
-        **memory,
-        **{n: ca.if_else(acts, command.memory[n], state[n]) for n, _ in law.memory},
-        **drive.memory,
-        "phase": ca.SX(0) if kind.free else _next_phase(state, settings),
-    }
-    output = measured_output(system, plane, kind, state, settings, values[:, 0], measured)
+        estimate = carried_on(system, kind, settings, (q, v), drive.parts, plant)
+    after = {**moved, **estimate, **decided.after}
+    output = measured_output(system, plane, kind, state, settings, values[:, 0], (q, v))
     row = {**state, "speed_ref": wanted_speed(state, settings)[0], "y": tip}
     row |= {"u": drive.mean, "force": force} | logged(output)
-    row |= {"far": command.far, "integral_used": integral_used(state, settings, view, command)}
+    used = integral_used(state, settings, decided.view, command)
+    row |= {"far": command.far, "integral_used": used}
     later = kept_layout(system, kind, law.memory).join(after)
     outputs = [later, log_layout(system).join(row), *bases.call([later, settings_symbol])]
     return ca.Function("advance", [state_symbol, settings_symbol, values], ca.cse(outputs))
-
-
-def wanted_torque(
-    kind: Kind,
-    state: Fields,
-    settings: Fields,
-    view: View,
-    command: ControlAction,
-    beam: composite.Compensation | None,
-) -> tuple[ca.SX, Fields]:
-    """Torque for the command, (m, 1), and the memory of composite control after this tick."""
-    memory = {name: state[name] for name, _ in composite.MEMORY.fields if name in state}
-    if command.torque is not None:
-        return command.torque, memory
-    assert command.acceleration is not None
-    if beam is not None:
-        speed = wanted_speed(state, settings)[0]
-        rate = composite.rates(beam, speed, command.acceleration)
-        after = {name: x + settings["dt"] * rate[name] for name, x in memory.items()}
-        return composite.torques(beam, rate, command.acceleration), after
-    acceleration = command.acceleration
-    torque = partial(linearization, view.system, view.q, view.v, view.model)
-    if kind.across_first:
-        part = command.along or _along(view, acceleration)
-        along, direction = part.command, part.direction
-        base = torque(acceleration - direction * along)
-        slope = torque(acceleration - direction * (along - 1)) - base
-        limits = view.system.torque_limits(settings["torque_limit"])
-        reduced = admissible_along(base, slope, along, limits)
-        acceleration = acceleration + direction * (reduced - along)
-    return torque(acceleration), memory
-
-
-def _along(view: View, acceleration: ca.SX) -> Along:
-    """The part of y'' along the path where the robot is, for a law that does not name it."""
-    direction = view.output.acceleration_per_along
-    return Along(ca.dot(direction, acceleration) / ca.dot(direction, direction), direction)
-
-
-def _next_phase(state: Fields, settings: Fields) -> ca.SX:
-    """Ticks since the last evaluation of the control law, modulo `hold_ticks`."""
-    phase = state["phase"] + 1
-    return phase * (phase < settings["hold_ticks"] - 0.5)
-
-
-def _integral(
-    kind: Kind,
-    law: Law,
-    state: Fields,
-    settings: Fields,
-    acts: ca.SX,
-    saturated: ca.SX,
-    command: ControlAction,
-) -> ca.SX:
-    """The next value of the integral; 0 while it is switched off.
-
-        I⁺ = I + hold_ticks dt e  in ticks in which the control law is evaluated.
-
-    It pauses only while a torque saturates (anti-windup). K3 = 0 switches it off, unless the law
-    always integrates; a law whose reference point runs by the clock also needs `tracker_integral`.
-
-    Source: eq. (18).
-    """
-    if command.error is None:
-        return ca.SX.zeros(*state["integral"].shape)
-    weight, on = interval(kind, settings), settings["K3"] != 0
-    if not kind.free:
-        weight = acts * (1 - saturated) * weight
-    if law.always_integrates:
-        on = ca.SX(1)
-    elif law.by_clock:
-        on = on * settings["tracker_integral"]
-    return on * (state["integral"] + weight * command.error)
-
-
-def bounded(integral: ca.SX, settings: Fields, view: View, command: ControlAction) -> ca.SX:
-    """The integral, shortened so that |K3 ∫e dt| <= K1 ρ: it moves the balance by ρ at most.
-
-    Otherwise a robot that a hand holds off its path would learn to push with the hand's force,
-    which would throw it to the other side when the hand lets go. ρ is 10 mm, or half the radius of
-    curvature at the closest point if that is less; with more, the arm would stay inside of a bend.
-    """
-    size, most = _size_of_integral(integral, settings), _most_of_integral(settings, view, command)
-    return integral * ca.if_else(size > most, most / size, 1)
-
-
-def integral_used(state: Fields, settings: Fields, view: View, command: ControlAction) -> ca.SX:
-    """The share of its bound that the integral takes, from 0 to 1; see `bounded`."""
-    size = _size_of_integral(state["integral"], settings)
-    most = _most_of_integral(settings, view, command)
-    return ca.if_else(most > 0, ca.fmin(size / most, 1), 0)
-
-
-def _size_of_integral(integral: ca.SX, settings: Fields) -> ca.SX:
-    """|K3 ∫e dt|, (1, 1), in units of e per s²."""
-    return settings["K3"] * ca.sqrt(ca.dot(integral, integral))
-
-
-def _most_of_integral(settings: Fields, view: View, command: ControlAction) -> ca.SX:
-    """K1 ρ, (1, 1), in units of e per s²."""
-    closest = view.closest
-    half = ca.norm_2(closest.first) / (2 * ca.fmax(closest.turning, STRAIGHT))
-    return settings["K1"] * ca.fmin(INTEGRAL_REACH, half) * command.error_per_metre
-
-
-def _next_places(
-    kind: Kind, law: Law, state: Fields, settings: Fields, view: View, command: ControlAction
-) -> Fields:
-    """After the tick: the closest point, θ_r by the law or else by the clock, and ω_ref."""
-    clock = clock_at(kind, law, state, settings, settings["dt"] / 2)
-    by_clock = clock.theta + settings["dt"] * clock_rate(clock)
-    return {
-        "theta": view.output.theta,
-        "theta_rate": view.output.theta_rate,
-        "theta_ref": by_clock if command.theta_ref is None else command.theta_ref,
-        "speed_ref": next_speed(state, settings),
-    }

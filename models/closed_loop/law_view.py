@@ -9,7 +9,6 @@ import casadi as ca
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loop_vectors import GAINS
 from onpath.models.closed_loop.reference_speed import task_at
-from onpath.models.closed_loop.sensing import measure
 from onpath.models.control import composite_control as composite
 from onpath.models.control.laws.expressions import LARGEST_NUMBER
 from onpath.models.control.laws.law import (
@@ -155,10 +154,16 @@ def law_view(
     state: Fields,
     settings: Fields,
     values: ca.SX,
+    measured: tuple[ca.SX, ca.SX],
     ahead: tuple[ca.SX, ca.SX],
     beam: composite.Compensation | None,
 ) -> View:
-    """The view of the law; `ahead` is (q, v) at the instant to which the controller looks."""
+    """The view of the law.
+
+    Args:
+        measured: q and v at the beginning of the tick.
+        ahead: q and v at the instant to which the controller looks.
+    """
     (q, v), h = ahead, settings["look_ahead"]
     y, y_rate = controlled(system, settings, q, v) if beam is None else (beam.y, beam.y_rate)
     output, closest = coordinates(frame, kind, state, settings, values[:, 0], y, y_rate)
@@ -183,7 +188,7 @@ def law_view(
         own_gains={gain.name: settings[gain.name] for gain in law.own_gains},
         integral=state["integral"],
         lag=lag(system, kind, settings),
-        measured=measure(system, kind, state, settings)[:2],
+        measured=measured,
         held=state["u"],
     )
 

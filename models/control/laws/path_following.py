@@ -27,8 +27,8 @@ def path_following(view: View) -> ControlAction:
 
     This is the paper's law within two bounds: the integral of every law is limited,
     |K3 ∫λ dt| <= K1 ρ with ρ = 10 mm or half the radius of the bend (`bounded` in
-    models/closed_loop/kernel.py), and far from the path the command becomes a straight return
-    (`far_from_path`).
+    models/closed_loop/controller_tick.py), and far from the path the command becomes a straight
+    return (`far_from_path`).
 
     Source: eqs. (16), (18), (19).
     """

@@ -10,8 +10,8 @@ import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
+from onpath.models.closed_loop.controller_tick import INTEGRAL_REACH
 from onpath.models.closed_loop.faults import explained, fault_in
-from onpath.models.closed_loop.kernel import INTEGRAL_REACH
 from onpath.models.closed_loop.simulation import Push, kind_of
 from onpath.models.control.laws.path_following import far_from_path
 from onpath.models.paths.curves import circle, ellipse

@@ -13,7 +13,7 @@ import pytest
 import onpath
 from onpath.lessons.labels import parameter_help
 from onpath.lessons.words import Words
-from onpath.models.closed_loop.kernel import INTEGRAL_REACH
+from onpath.models.closed_loop.controller_tick import INTEGRAL_REACH
 from onpath.models.control.laws.contouring import contouring
 from onpath.models.control.laws.disturbance_observer import disturbance_observer
 from onpath.models.control.laws.registry import LAWS
