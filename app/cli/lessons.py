@@ -56,6 +56,7 @@ class CheckLessons:
         from onpath.lessons.course import BUILT_IN, read_folder
 
         course, problems, folder = read_folder(self.folder or BUILT_IN)
+        print(rates_table(course), end="")
         if not problems:
             loop_cache = LoopCache(at_once=True)
             problems = list(play_course(course, folder, loop_cache))
@@ -112,6 +113,27 @@ def minutes_table(course: Course, steps: bool) -> str:
     for name, route in course.routes.items():
         lines.append(f"{name:32.32s} {route.minutes:7.1f} route: {route.text(route.title, 'en')}")
     return "\n".join(lines)
+
+
+def rates_table(course: Course) -> str:
+    """How often strategies that read no physics are right; empty if nothing is asked.
+
+    One line per strategy, one column per kind of question and language. An exclamation mark is
+    behind a rate that is not by chance.
+    """
+    from onpath.lessons.strategies import ALLOWED, rates
+
+    found = [each for each in rates(course) if each.count]
+    groups = list(dict.fromkeys(each.group for each in found))
+    cells = {(each.strategy, each.group): str(each) for each in found}
+    if not found:
+        return ""
+    title = f"right by form alone (by chance ± {ALLOWED} standard deviations; ! is not by chance)"
+    lines = [title, " ".join([f"{'':14s}", *(f"{group:>17s}" for group in groups)])]
+    for strategy in dict.fromkeys(each.strategy for each in found):
+        row = (f"{cells.get((strategy, group), ''):>17s}" for group in groups)
+        lines.append(" ".join([f"{strategy:14s}", *row]))
+    return "\n".join(lines) + "\n"
 
 
 def _count(number: int, what: str) -> str:

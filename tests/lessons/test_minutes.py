@@ -23,11 +23,8 @@ from onpath.lessons.minutes import (
     word_count,
 )
 from onpath.lessons.parse import read_lesson
-from tests.support.built_in import built_in_course
 from tests.support.lesson_texts import LESSON, write_lesson
 
-LONGEST = 25.0
-"""Minutes of a lesson at most, in each language."""
 BEFORE = "Which one *waits*?"
 
 
@@ -97,14 +94,3 @@ def test_optional_steps_are_counted_apart(
     assert [line.endswith(" optional") for line in lines[2:]] == [
         step.optional for step in lesson.steps
     ]
-
-
-def test_no_lesson_takes_more_than_25_minutes_without_its_optional_steps() -> None:
-    course, _ = built_in_course()
-    long = {
-        (name, language): required_minutes(lesson).total
-        for name, versions in course.lessons.items()
-        for language, lesson in versions.items()
-        if required_minutes(lesson).total > LONGEST
-    }
-    assert long == {}
