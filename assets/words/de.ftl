@@ -1842,6 +1842,7 @@ robot_file-xacro_argument = { $file } verlangt ein Argument und gibt ihm keinen 
 robot_file-xacro_ran = { $file } ist ein Programm: xacro hat seine Ausdrücke ausgeführt, in einem Prozess mit Grenzen
 robot_file-include = { $file } lässt sich nicht einbinden: Es ist keine .xml-Datei im Ordner oder Paket des Roboters (--package NAME=ORDNER; in Python packages=…), oder sie wird zweimal eingebunden
 robot_file-guessed_tip = die Datei sagt nicht, welches Glied die Spitze ist: genommen wird { $tip }
+robot_file-guessed_end = die Datei hat kein Glied am Ende von { $tip }, dessen Ursprung nur die Gelenke davor bewegen: Die Spitze ist sein äußerstes Ende, in seinem Koordinatensystem bei { $place } m. Ein Glied mit festem Gelenk an dieser Stelle würde es sagen
 robot_file-guessed_free = schwebende, ebene und Kugelgelenke bleiben, wo sie sind: { $names }
 robot_file-guessed_mimic = Gelenke, die einem anderen folgen, bleiben, wo sie sind: { $names }
 robot_file-guessed_many = höchstens 8 Gelenke können sich auf dem Weg zur Spitze bewegen; diese bleiben, wo sie sind: { $names }

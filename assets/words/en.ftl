@@ -1434,6 +1434,7 @@ robot_file-xacro_argument = { $file } asks for an argument, and gives it no valu
 robot_file-xacro_ran = { $file } is a program: xacro has run its expressions, in a process with limits
 robot_file-include = { $file } cannot be included: it is not an .xml file in the folder or package of the robot (--package NAME=FOLDER; in Python, packages=…), or it is included twice
 robot_file-guessed_tip = the file does not say which link is the tip: { $tip } is taken
+robot_file-guessed_end = the file has no link at the end of { $tip }, whose origin only the joints before it move: its far end is the tip, at { $place } m in its frame. A link there, with a fixed joint, would say so
 robot_file-guessed_free = floating, planar and ball joints stay where they are: { $names }
 robot_file-guessed_mimic = joints that follow another one stay where they are: { $names }
 robot_file-guessed_many = at most 8 joints can move on the way to the tip; these stay where they are: { $names }

@@ -18,6 +18,7 @@ from onpath.models.robot_files.xml_elements import shown
 
 MOST_JOINTS = 8  # that move on the way to the tip
 MOST_NAMES = 8  # of links or joints in a message
+DIGITS = 6  # of guessed numbers, so that they are the same with other versions of libraries
 EXACT = 1e-10  # entries of rotations this near to 0 and ±1 are set to them: files round angles
 
 
@@ -204,3 +205,12 @@ def exact(rotation: Array) -> Array:
     near = np.abs(rotation - rounded) < EXACT
     found: Array = np.where(near, rounded, rotation)
     return found
+
+
+def rounded(values: Array | float) -> Array:
+    """Numbers with `DIGITS` digits of the largest one."""
+    largest = float(np.abs(values).max())
+    if not largest > 0:
+        return np.asarray(values, dtype=float)
+    decimals = DIGITS - 1 - int(np.floor(np.log10(largest)))
+    return np.round(values, decimals)

@@ -16,12 +16,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
+import msgspec
 import numpy as np
 
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError, Message
 from onpath.models.robot_files.chain import Shape
-from onpath.models.robot_files.file_chain import Group, Options, aligned, some_names
+from onpath.models.robot_files.file_chain import Group, Options, aligned, rounded, some_names
 from onpath.models.robot_files.guesses import Guess
 from onpath.models.robot_files.hull_process import LIBRARY, Hull, hulls_of
 
@@ -29,7 +30,6 @@ DENSITY = 1000.0  # [kg/m³]
 NO_MASS = 1e-6  # [kg], below which a mass is a dummy
 NO_INERTIA = 1e-9  # [m²], inertia by mass below which a body is a point
 OFF = 0.01  # share of the largest moment by which the others may miss it without a remark
-DIGITS = 6  # of guessed numbers, so that they are the same with other versions of libraries
 THICKNESS = 0.045
 """Radius of a capsule, as a share of the robot's length."""
 THINNEST, THICKEST = 0.008, 0.06  # [m]
@@ -90,14 +90,9 @@ def add_masses(
         i for i in range(1, len(groups)) if i not in light and stated[i] and _is_point(links[i])
     ]
     solids = _solids(groups, links, [*light, *points], tip)
-    density = DENSITY if options.density is None else options.density
-    masses = {i: density * solids[i].volume for i in light}
-    if options.mass is not None and light:
-        rest = options.mass - sum(stated[1:])
-        if rest <= 0:
-            least = f"{sum(stated[1:]):.6g}"
-            raise CodedError("robot_file.mass_stated", mass=f"{options.mass:.6g}", stated=least)
-        factor = rest / sum(masses.values())
+    masses = {i: DENSITY * solids[i].volume for i in light}
+    if light:
+        factor = mass_factor(options, sum(stated[1:]), sum(masses.values()))
         masses = {i: factor * mass for i, mass in masses.items()}
     numbers = list[float]()
     for i, each in enumerate(links):
@@ -106,15 +101,18 @@ def add_masses(
         if i in light or i in points:
             mass = masses.get(i, stated[i])
             share = mass / solids[i].volume
-            inertia = _rounded(share * np.array(solids[i].inertia))
-            mass, centre = float(_rounded(mass)), _rounded(np.array(solids[i].centre))
+            inertia = rounded(share * np.array(solids[i].inertia))
+            mass, centre = float(rounded(mass)), rounded(np.array(solids[i].centre))
             if i in light:
                 groups[i].add(mass, centre, inertia)
             else:
                 groups[i].inertia = groups[i].inertia + inertia
             numbers += [mass, *centre.tolist(), *np.ravel(inertia).tolist()]
     if light:
-        guesses.append(_mass_guess([groups[i].name for i in light], masses, solids, options))
+        total, volume = sum(masses.values()), sum(solids[i].volume for i in light)
+        lacks = any(solid.fault == LIBRARY for solid in solids.values())
+        names = [groups[i].name for i in light]
+        guesses.append(mass_guess(names, total, total / volume, INSTALL if lacks else "", options))
     if points:
         names = [groups[i].name for i in points]
         message = Message("robot_file.guessed_inertia", some_names(names))
@@ -193,7 +191,7 @@ def _solids(
             found[i] = next(hull for hull in simple if not hull.fault)  # it may be far too long
         if faults:
             solid = found[i]
-            found[i] = Hull(solid.volume, solid.centre, solid.inertia, LIBRARY)
+            found[i] = msgspec.structs.replace(solid, fault=LIBRARY)
     return found
 
 
@@ -223,26 +221,37 @@ def _capsule(end: Array, radius: float) -> Shape:
     )
 
 
-def _rounded(values: Array | float) -> Array:
-    """Numbers with `DIGITS` digits of the largest one."""
-    largest = float(np.abs(values).max())
-    if not largest > 0:
-        return np.asarray(values, dtype=float)
-    decimals = DIGITS - 1 - int(np.floor(np.log10(largest)))
-    return np.round(values, decimals)
+def mass_factor(options: Options, stated: float, guessed: float) -> float:
+    """What masses that are guessed by `DENSITY` are multiplied by, as the options want it.
+
+    Args:
+        stated: sum of the masses that the file states, of what moves, [kg].
+        guessed: sum of the others, [kg].
+
+    Raises:
+        CodedError: `options.mass` is not more than the masses that the file states.
+    """
+    if options.mass is None:
+        return (DENSITY if options.density is None else options.density) / DENSITY
+    if options.mass <= stated:
+        mass, least = f"{options.mass:.6g}", f"{stated:.6g}"
+        raise CodedError("robot_file.mass_stated", mass=mass, stated=least)
+    return (options.mass - stated) / guessed
 
 
-def _mass_guess(
-    names: Sequence[str], masses: dict[int, float], solids: dict[int, Hull], options: Options
+def mass_guess(
+    names: Sequence[str], mass: float, density: float, install: str, options: Options
 ) -> Guess:
-    total = sum(masses.values())
-    density = total / sum(solids[i].volume for i in masses)
-    lacks = any(solid.fault == LIBRARY for solid in solids.values())
+    """The guess of the masses of bodies.
+
+    Args:
+        mass: their sum, [kg].
+        density: of all of them, [kg/m³].
+        install: what installs a package that would have read their meshes; "" if none is missing.
+    """
     message = Message(
-        "robot_file.guessed_mass_without" if lacks else "robot_file.guessed_mass",
-        {**some_names(names), "mass": f"{total:.3g}", "density": f"{density:.0f}"},
+        "robot_file.guessed_mass_without" if install else "robot_file.guessed_mass",
+        {**some_names(names), "mass": f"{mass:.3g}", "density": f"{density:.0f}"},
     )
-    if lacks:
-        return Guess("mass", message, INSTALL)
     given = options.mass is not None or options.density is not None
-    return Guess("mass", message, "" if given else f"--mass {total:.3g}")
+    return Guess("mass", message, install or ("" if given else f"--mass {mass:.3g}"))

@@ -21,6 +21,7 @@ from onpath.models.robot_files.shape_solids import solid_of
 MOST_BYTES = 200_000_000  # of all meshes
 MOST_TRIANGLES = 2_000_000  # of all meshes
 LARGEST = 20.0  # [m], of a shape that is weighed: others are in another unit
+AT_END = 0.01  # share of the largest distance by which corners at the end may be nearer
 LIBRARY = "library"
 """Why a shape has no hull: a package that would read it is not installed."""
 
@@ -32,12 +33,14 @@ class Hull(msgspec.Struct, frozen=True):
         volume: [m³].
         centre: of mass, [m].
         inertia: about that, 3 rows, [m⁵].
+        far: its end: the middle of the corners that are farthest from the axis z, [m].
         fault: why there is none; empty if there is one.
     """
 
     volume: float = 0.0
     centre: tuple[float, ...] = ()
     inertia: tuple[tuple[float, ...], ...] = ()
+    far: tuple[float, ...] = ()
     fault: str = ""
 
 
@@ -92,10 +95,13 @@ def _hull(solid: Any) -> Hull:
     hull: Any = solid.convex_hull
     if not np.ptp(hull.vertices, axis=0).max() < LARGEST or not hull.volume > 0:
         raise ValueError("no solid")
+    away = np.hypot(*hull.vertices[:, :2].T)
+    far = hull.vertices[away >= (1 - AT_END) * away.max()].mean(axis=0)
     return Hull(
         volume=float(hull.volume),
         centre=tuple(map(float, hull.center_mass)),
         inertia=tuple(tuple(map(float, row)) for row in hull.moment_inertia),
+        far=tuple(map(float, far)),
     )
 
 

@@ -5,8 +5,9 @@ file -> mjcf_check.py -> mujoco_process.py -> MuJoCo in another process -> array
 
 from __future__ import annotations
 
+import hashlib
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -15,7 +16,7 @@ import numpy as np
 
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError, Message
-from onpath.models.robot_files.chain import Chain, Joint, Shape
+from onpath.models.robot_files.chain import Joint, Shape
 from onpath.models.robot_files.file_chain import (
     MOST_JOINTS,
     FileChain,
@@ -29,10 +30,12 @@ from onpath.models.robot_files.file_chain import (
     locked_guesses,
     turn,
 )
+from onpath.models.robot_files.file_masses import DENSITY, LinkMass, mass_factor, mass_guess
 from onpath.models.robot_files.guesses import Guess
 from onpath.models.robot_files.mjcf_check import all_elements, checked_model
 from onpath.models.robot_files.mujoco_process import read_model
 from onpath.models.robot_files.tip_guess import TipPlace, suggested_tips, surplus_joints
+from onpath.models.robot_files.whole_chain import whole_chain
 from onpath.models.robot_files.xml_elements import Element, FileFault, safe_name, shown
 
 FREE, BALL, SLIDE = 0, 1, 2  # types of joints in MuJoCo; 3 turns
@@ -58,7 +61,9 @@ def read_mjcf(file: Path, root: Element, options: Options) -> FileChain:
     model, warnings = read_model(checked.text, checked.meshes, file.name)
     read = _Model(model, root, options).read()
     told = [Message("robot_file.mujoco_warns", {"reason": each}) for each in warnings]
-    return replace(read, remarks=(*read.remarks, *told))
+    looks = hashlib.sha256(b"".join(checked.meshes.values())).hexdigest()[:16]
+    rests = read.rests + (looks if checked.meshes else "")
+    return replace(read, remarks=(*read.remarks, *told), rests=rests)
 
 
 class _Model:
@@ -94,29 +99,64 @@ class _Model:
             here = before @ _place(model.body_pos[body], model.body_quat[body])
             number, here = self._joined(body, body in self._way, number, here, groups)
             frames.append((number, here))
-            inertial = here @ _place(model.body_ipos[body], model.body_iquat[body])
-            inertia = inertial.rotation @ np.diag(model.body_inertia[body]) @ inertial.rotation.T
-            groups[number].add(float(model.body_mass[body]), inertial.translation, inertia)
+        weighed = self._weighed([body for body, (number, _) in enumerate(frames) if number])
+        links = list[list[LinkMass]]([[] for _ in groups])
+        for body, (number, here) in enumerate(frames):
+            links[number].append(self._link_mass(body, here, weighed.get(body, 1.0)))
         for geom in range(len(model.geom_type)):
             number, here = frames[int(model.geom_bodyid[geom])]
             groups[number].shapes += self._shapes(geom, here)
         number, here = frames[tip]
         if number == 0:
             raise FileFault(self._root, Message("robot_file.still_tip"))
-        here = here @ place
-        chain = Chain(
-            bodies=tuple(group.body() for group in groups[1:]),
-            tip=here.translation,
-            facing=here.rotation[:, 2],
-            base=tuple(groups[0].shapes),
+        chain, guesses, numbers = whole_chain(
+            groups=groups, links=links, tip=here @ place, name=tips[0], options=self._options
         )
         return FileChain(
             chain=chain,
             home=self._home(),
             remarks=tuple(self._remarks()),
-            guesses=tuple(self._guesses(tips[0])),
+            guesses=(*self._guesses(tips[0]), *self._mass_guess(weighed), *guesses),
             tips=tips,
+            rests=numbers,
         )
+
+    def _link_mass(self, body: int, here: RigidTransform, factor: float) -> LinkMass:
+        """The mass of a body times a factor, in the frame of its group."""
+        model = self._model
+        inertial = here @ _place(model.body_ipos[body], model.body_iquat[body])
+        inertia = inertial.rotation @ np.diag(model.body_inertia[body]) @ inertial.rotation.T
+        return LinkMass(
+            name=model.body_names[body],
+            mass=factor * float(model.body_mass[body]),
+            centre=inertial.translation,
+            inertia=factor * inertia,
+        )
+
+    def _weighed(self, moving: Sequence[int]) -> dict[int, float]:
+        """What multiplies the masses that MuJoCo gives to bodies of which the file says none.
+
+        Args:
+            moving: numbers of the bodies that move.
+
+        Raises:
+            CodedError: see `mass_factor`.
+        """
+        masses = {body: float(self._model.body_mass[body]) for body in moving}
+        weighed = [body for body in moving if body in self._model.weighed and masses[body]]
+        if not weighed:
+            return {}
+        guessed = sum(masses[body] for body in weighed)
+        factor = mass_factor(self._options, sum(masses.values()) - guessed, guessed)
+        return dict.fromkeys(weighed, factor)
+
+    def _mass_guess(self, weighed: Mapping[int, float]) -> Iterator[Guess]:
+        """The guess of the masses of the bodies in `_weighed`."""
+        model = self._model
+        names = [model.body_names[body] or f"body{body}" for body in weighed]
+        total = sum(factor * float(model.body_mass[body]) for body, factor in weighed.items())
+        for factor in {*weighed.values()}:
+            yield mass_guess(names, total, DENSITY * factor, "", self._options)
 
     def _joined(
         self, body: int, on_way: bool, number: int, here: RigidTransform, groups: list[Group]

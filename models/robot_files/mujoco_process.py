@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import io
 import json
+import math
 from collections.abc import Mapping
 from contextlib import suppress
 from importlib import import_module
@@ -38,6 +39,9 @@ FIELDS = (
 """The arrays of `mjModel` that are read."""
 
 
+USUAL_DENSITY = 1000.0  # [kg/m³], of geoms in MuJoCo
+
+
 class Reading(msgspec.Struct, frozen=True):
     """What the process reads: a model, and the files that it names."""
 
@@ -50,7 +54,9 @@ def read_model(
 ) -> tuple[Any, tuple[str, ...]]:
     """The arrays of a model as MuJoCo reads it, by their names in MuJoCo, and its warnings.
 
-    The names are in `body_names`, `joint_names`, `site_names` and `key_names`; "" for none.
+    The names are in `body_names`, `joint_names`, `site_names` and `key_names`; "" for none. The
+    numbers of bodies whose masses are from geoms, of none of which the file says how heavy it is,
+    are in `weighed`.
 
     Args:
         text: an MJCF file.
@@ -77,7 +83,8 @@ def read_model(
         raise CodedError("robot_file.mujoco_ended", file=file) from None
     if told["refused"]:
         raise CodedError("robot_file.mjcf", file=file, reason=_one_line(told["refused"]))
-    return SimpleNamespace(**arrays, **told["names"]), tuple(map(_one_line, told["warnings"]))
+    model = SimpleNamespace(**arrays, **told["names"], weighed=told["weighed"])
+    return model, tuple(map(_one_line, told["warnings"]))
 
 
 def _one_line(text: str) -> str:
@@ -100,15 +107,35 @@ def _read(job: Reading) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
         _close_files()
         mujoco.set_mju_user_warning(warnings.append)  # else they go to a file in the current folder
         model = mujoco.MjModel.from_xml_string(job.text, job.files)
+        weighed = _weighed(mujoco.MjSpec.from_string(job.text))
     except Exception as error:
         refused = str(error) or type(error).__name__
-        return {}, {"refused": refused, "warnings": [], "names": {}}
+        return {}, {"refused": refused, "warnings": [], "names": {}, "weighed": []}
     names = {
         f"{kind}_names": [getattr(model, kind)(i).name for i in range(getattr(model, count))]
         for kind, count in NAMED.items()
     }
     arrays = {name: np.array(getattr(model, name)) for name in FIELDS}
-    return arrays, {"refused": "", "warnings": warnings, "names": names}
+    told = {"refused": "", "warnings": warnings, "names": names, "weighed": weighed}
+    return arrays, told
+
+
+def _weighed(spec: Any) -> list[int]:
+    """The numbers of bodies of which the file says neither a mass nor a density."""
+    if spec.compiler.settotalmass > 0:
+        return []
+    always = spec.compiler.inertiafromgeom.name == "mjINERTIAFROMGEOM_TRUE"
+    return [
+        number
+        for number, body in enumerate(spec.bodies)
+        if body.geoms and (always or not body.explicitinertial)
+        if all(map(_says_nothing, body.geoms))
+    ]
+
+
+def _says_nothing(geom: Any) -> bool:
+    """Whether a geom has no mass, and the density that MuJoCo gives where there is none."""
+    return math.isnan(geom.mass) and geom.density == USUAL_DENSITY
 
 
 def _close_files() -> None:

@@ -33,10 +33,11 @@ from onpath.models.robot_files.file_chain import (
     some_names,
     turn,
 )
-from onpath.models.robot_files.file_masses import LinkMass, Masses, add_masses, is_dummy
+from onpath.models.robot_files.file_masses import LinkMass, is_dummy
 from onpath.models.robot_files.guesses import Guess
 from onpath.models.robot_files.mesh_folders import MeshFolders
 from onpath.models.robot_files.tip_guess import TipPlace, suggested_tips, surplus_joints
+from onpath.models.robot_files.whole_chain import whole_chain
 from onpath.models.robot_files.xml_elements import Element, FileFault, shown
 
 MOST_LINKS = 1000
@@ -57,14 +58,14 @@ def read_urdf(file: Path, root: Element, options: Options) -> FileChain:
         CodedError: an option names a link or joint that does not exist.
     """
     tree = _Tree(file, root, options)
-    chain, masses = tree.chain()
+    chain, guesses, numbers = tree.chain()
     return FileChain(
         chain=chain,
         home={},
         remarks=tuple(tree.remarks()),
-        guesses=(*tree.guesses(), *masses.guesses),
+        guesses=(*tree.guesses(), *guesses),
         tips=tree.tips,
-        rests=masses.numbers,
+        rests=numbers,
     )
 
 
@@ -212,8 +213,8 @@ class _Tree:
             message = Message("robot_file.guessed_package", {"package": shown(name)})
             yield Guess("package", message, f"--package {shlex.quote(name)}=FOLDER")
 
-    def chain(self) -> tuple[Chain, Masses]:
-        """The moving bodies, from the base to the tip, and what is guessed of their masses."""
+    def chain(self) -> tuple[Chain, tuple[Guess, ...], str]:
+        """The moving bodies, from the base to the tip; see `whole_chain`."""
         groups, tip = [Group(self._base)], RigidTransform()
         masses = list[list[LinkMass]]([[]])
         waiting = [(self._base, 0, RigidTransform())]
@@ -238,14 +239,9 @@ class _Tree:
                 groups.append(Group(child, moving, origin @ frame))
                 masses.append([])
                 waiting.append((child, len(groups) - 1, RigidTransform(frame.rotation.T)))
-        found = add_masses(groups, masses, tip.translation, self._options)
-        chain = Chain(
-            bodies=tuple(group.body() for group in groups[1:]),
-            tip=tip.translation,
-            facing=tip.rotation[:, 2],
-            base=tuple(groups[0].shapes),
+        return whole_chain(
+            groups=groups, links=masses, tip=tip, name=self._tip, options=self._options
         )
-        return chain, found
 
     def _moving(self, joint: Element) -> Joint | None:
         """The joint if it is on the way to the tip and moves; None if it is locked."""

@@ -10,6 +10,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 import pytest
+import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -37,6 +38,7 @@ from tests.support.robot_files import PLANAR, urdf
 STATED = urdf("arm", PLANAR)
 BARE = re.sub("<inertial>.*?</inertial>", "", STATED)
 SPHERE = '<visual><geometry><sphere radius="0.05"/></geometry></visual>'
+JOINTS = [f"joint{i + 1}" for i in range(len(PLANAR))]
 DUMMY = '<inertial><mass value="{}"/><inertia ixx="{}" iyy="{}" izz="{}"/></inertial>'
 
 
@@ -190,3 +192,18 @@ def test_the_name_says_on_what_the_motion_rests(
     lacking = read_robot(file, Options(pose=pose))
     assert lacking.entry.name != own
     assert any("pip install" in guess.line for guess in lacking.guesses)
+
+
+def test_another_mesh_is_another_robot_exactly_where_it_is_weighed(tmp_path: Path) -> None:
+    """The same file, with another mesh of about the same size."""
+    visual = '<visual><geometry><mesh filename="link.stl"/></geometry></visual></link>'
+    for text, count in ((BARE, 2), (STATED, 1)):
+        file = tmp_path / "arm.urdf"
+        file.write_text(
+            re.sub("<visual>.*?</visual>", "", text).replace("</link>", visual), "utf-8"
+        )
+        names = set[str]()
+        for sections in (8, 12, 8):
+            trimesh.creation.cylinder(0.02, 0.1, sections=sections).export(tmp_path / "link.stl")
+            names.add(read_robot(file, Options(pose=dict.fromkeys(JOINTS, 0.7))).entry.name)
+        assert len(names) == count

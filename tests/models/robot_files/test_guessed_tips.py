@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import math
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from onpath.models.robot_files.file_chain import MOST_JOINTS, FileChain, Options
 from onpath.models.robot_files.tip_guess import MOST_TIPS
@@ -123,3 +127,45 @@ def test_limits_that_an_exporter_leaves_at_zero_are_none() -> None:
     assert [joint.name for joint in read(still).chain.joints] == [
         f"a{i}_joint" for i in (3, 4, 5, 6)
     ]
+
+
+def ending(count: int, length: float, angle: float, frame: str) -> str:
+    """An arm of some joints, whose last link draws a bar of a length, and what else it has."""
+    joints = " ".join(f"a{i}" for i in range(1, count + 1))
+    x, z = length * math.cos(angle), length * math.sin(angle)
+    bar = (
+        f'<visual><origin xyz="{x / 2!r} 0.01 {z / 2!r}" rpy="0 {math.pi / 2 - angle!r} 0"/>'
+        f'<geometry><box size="0.02 0.03 {length!r}"/></geometry></visual>'
+    )
+    last = f'<link name="a{count}">'
+    text = robot(f"base: {joints}").replace(last, last + bar)
+    return text + (frame and frame.format(parent=f"a{count}", place=f"{x!r} 0.01 {z!r}"))
+
+
+FRAME = (
+    '<link name="end"/><joint name="end" type="fixed"><parent link="{parent}"/>'
+    '<child link="end"/><origin xyz="{place}"/></joint>'
+)
+
+
+@settings(max_examples=20, deadline=None)
+@given(count=st.integers(2, 3), length=st.floats(0.1, 0.9), angle=st.floats(-np.pi, np.pi))
+def test_a_last_link_without_a_frame_ends_where_its_bar_does(
+    count: int, length: float, angle: float
+) -> None:
+    found = read(ending(count, length, angle, ""))
+    framed = read(ending(count, length, angle, FRAME))
+    assert found.chain.tip == pytest.approx(framed.chain.tip, abs=1e-5)
+    told = [guess for guess in found.guesses if guess.kind == "tip"]
+    assert [f"of a{count}," in str(guess.message) for guess in told] == [True]
+    told_place = re.search(r" at ([-+.e\d ]+) m ", str(told[0].message))
+    place = [float(each) for each in told_place[1].split()] if told_place else []
+    assert place == pytest.approx([length * np.cos(angle), 0.01, length * np.sin(angle)], abs=1e-3)
+    assert not any(guess.kind == "tip" for guess in framed.guesses)
+    named = read(ending(count, length, angle, ""), Options(tip=f"a{count}"))
+    assert np.array_equal(named.chain.tip, found.chain.tip)
+
+
+def test_a_tip_that_enough_joints_move_stays() -> None:
+    found = read(ending(4, 0.3, 0.5, ""))
+    assert found.guesses == () and not found.chain.tip.any()

@@ -1,0 +1,116 @@
+"""Masses of an MJCF file that says nothing of them, or only of some."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import trimesh
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from onpath.models.errors import CodedError
+from onpath.models.robot_files.chain import Body
+from onpath.models.robot_files.file_chain import Options
+from onpath.models.systems.robot_file import RobotFile, read_robot
+
+pytest.importorskip("mujoco")
+STATED = {
+    "": "",
+    "a mass": 'mass="0.7"',
+    "a density": 'density="300"',
+    "an inertial": '<inertial pos="0.01 0 0.1" mass="0.4" diaginertia="0.01 0.012 0.008"/>',
+}
+"""What a body says of how heavy it is, as attributes of its geom or an element beside it."""
+
+
+def arm(bodies: list[str], **usual: float) -> str:
+    """An arm in a plane of one link for each entry of `bodies`, which are keys of `STATED`.
+
+    Args:
+        usual: attributes that every geom has which says nothing.
+    """
+    said = "".join(f' {name}="{value:.17g}"' for name, value in usual.items())
+    inner = '<site name="tip" pos="0 0 0.2"/>'
+    for i, each in reversed([*enumerate(bodies)]):
+        beside = STATED[each] if each == "an inertial" else ""
+        own = said if not each else "" if beside else f" {STATED[each]}"
+        inner = (
+            f'<body name="link{i}" pos="0 0 0.2"><joint name="joint{i}" axis="0 1 0"/>{beside}'
+            f'<geom type="capsule" fromto="0 0 0.02 0.03 0 0.18" size="0.0{i + 2}"{own}/>'
+            f"{inner}</body>"
+        )
+    return f"<mujoco><worldbody>{inner}</worldbody></mujoco>"
+
+
+def read(folder: Path, text: str, **options: Any) -> RobotFile:
+    file = folder / "arm.xml"
+    file.write_text(text, "utf-8")
+    pose = {f"joint{i}": 0.6 * (i + 1) for i in range(text.count("<joint"))}
+    return read_robot(file, Options(tip="tip", pose=pose, **options))
+
+
+def bodies_of(robot: RobotFile) -> tuple[Body, ...]:
+    assert robot.entry.source is not None
+    return robot.entry.source.chain.bodies
+
+
+def are_equal(one: RobotFile, other: RobotFile) -> bool:
+    return all(
+        np.allclose(getattr(a, name), getattr(b, name), rtol=1e-9, atol=1e-12)
+        for a, b in zip(bodies_of(one), bodies_of(other), strict=True)
+        for name in ("mass", "moment", "inertia")
+    )
+
+
+kinds = st.lists(st.sampled_from([*STATED]), min_size=2, max_size=4)
+
+
+@settings(max_examples=6, deadline=None)
+@given(bodies=kinds, density=st.floats(50.0, 9000.0))
+def test_a_density_acts_as_if_the_file_said_it(
+    tmp_path_factory: pytest.TempPathFactory, bodies: list[str], density: float
+) -> None:
+    folder = tmp_path_factory.mktemp("arm")
+    given_here = read(folder, arm(bodies), density=density)
+    assert are_equal(given_here, read(folder, arm(bodies, density=density)))
+
+
+@settings(max_examples=6, deadline=None)
+@given(bodies=kinds, more=st.floats(0.1, 50.0))
+def test_a_mass_is_that_of_all_that_moves_and_stated_ones_stay(
+    tmp_path_factory: pytest.TempPathFactory, bodies: list[str], more: float
+) -> None:
+    folder = tmp_path_factory.mktemp("arm")
+    usual = read(folder, arm(bodies))
+    stated = sum(b.mass for b, said in zip(bodies_of(usual), bodies, strict=True) if said)
+    found = read(folder, arm(bodies), mass=stated + more)
+    if "" in bodies:
+        assert sum(body.mass for body in bodies_of(found)) == pytest.approx(stated + more)
+        with pytest.raises(CodedError):
+            read(folder, arm(bodies), mass=0.999 * stated)
+    for before, after, said in zip(bodies_of(usual), bodies_of(found), bodies, strict=True):
+        assert not said or before.mass == after.mass
+
+
+@pytest.mark.parametrize("bodies", [["", "a mass"], ["a density", "an inertial"], ["", ""]])
+def test_what_is_weighed_is_said_and_its_line_settles_it(tmp_path: Path, bodies: list[str]) -> None:
+    robot = read(tmp_path, arm(bodies))
+    said = [guess for guess in robot.guesses if guess.kind == "mass"]
+    names = ", ".join(f"link{i}" for i, each in enumerate(bodies) if not each)
+    assert [str(guess.message).endswith(names) for guess in said] == [True] * ("" in bodies)
+    assert all(guess.line == "" for guess in read(tmp_path, arm(bodies), density=1000.0).guesses)
+
+
+def test_another_mesh_is_another_robot(tmp_path: Path) -> None:
+    """The same file, whose mesh is another one of the same size."""
+    mesh = '<geom type="mesh" mesh="link"/>'
+    text = arm(["", ""]).replace("<worldbody>", '<asset><mesh file="link.stl"/></asset><worldbody>')
+    text = text.replace('<site name="tip"', f'{mesh}<site name="tip"')
+    names = set[str]()
+    for sections in (8, 12, 8):
+        trimesh.creation.cylinder(0.02, 0.1, sections=sections).export(tmp_path / "link.stl")
+        names.add(read(tmp_path, text).entry.name)
+    assert len(names) == 2
