@@ -117,7 +117,7 @@ class LessonRun(LessonState):
         if index not in range(len(lesson.steps)):
             raise CodedError("error.no_step", step=index + 1, steps=len(lesson.steps))
         before = capture(lab.simulation) if self.lesson is None else self.before
-        _set_up(lab, lesson, index)
+        self._set_up(lab, lesson, index)
         route = route if route in self.course.routes else self.progress.route
         self.progress = replace(self.progress, lesson=name, route=route, ended=False)
         self.before = before
@@ -148,6 +148,7 @@ class LessonRun(LessonState):
             ValueError: the teacher keeps the student within some steps.
         """
         self.check_within("", 0)
+        self.judge(lab.simulation)
         self.progress = replace(self.progress, lesson="", route="", ended=False)
         self._begin_again(lab, running=lab.simulation.running)
         if self.before is not None:
@@ -223,7 +224,7 @@ class LessonRun(LessonState):
             return
         self.check_unlocked()
         rate = simulation.settings.rate if self._rate is None else self._rate
-        _set_up(lab, lesson, self.index)
+        self._set_up(lab, lesson, self.index)
         simulation.set(rate=rate)  # may be slow motion; the result is the same
         self._judge.begin = Beginning.now(simulation)
         self._trace = Trace(quantity_of(found[1]), self._judge.begin) if found else None
@@ -251,6 +252,10 @@ class LessonRun(LessonState):
             return
         if self._player is not None and self._trace is not None:
             self._trace.follow(simulation)
+        self.judge(simulation)
+
+    def judge(self, simulation: Simulation) -> None:
+        """Evaluate the tasks now; also before a run ends, with which its record is lost."""
         if self.step is not None and self.step.tasks():
             for task, value, way in self._judge.follow(simulation, self.step.tasks(), self.words):
                 self._pass(task.id, value, way)
@@ -274,9 +279,15 @@ class LessonRun(LessonState):
     def _go(self, index: int, lab: LessonLab) -> None:
         lesson = self.lesson
         assert lesson is not None
-        _set_up(lab, lesson, index)
+        self._set_up(lab, lesson, index)
         self.progress = replace(self.progress, ended=False)
         self._arrive(index, lab)
+
+    def _set_up(self, lab: LessonLab, lesson: Lesson, index: int) -> None:
+        """Set the lab up for a step, which ends the run of the open one."""
+        self.judge(lab.simulation)
+        lab.set_up(setup_of(lesson, index))
+        lab.simulation.editor.select(None)
 
     def _arrive(self, index: int, lab: LessonLab) -> None:
         """Begin a step, in a lab that is set up."""
@@ -308,12 +319,6 @@ class LessonRun(LessonState):
             truths = {**truths, found[0]: self._trace.truth()}
         played = tuple(dict.fromkeys((*self.notes.played, str(self.index))))
         self.note(truths=truths, played=played)
-
-
-def _set_up(lab: LessonLab, lesson: Lesson, index: int) -> None:
-    """Set the lab up for a step."""
-    lab.set_up(setup_of(lesson, index))
-    lab.simulation.editor.select(None)
 
 
 def quantity_of(prediction: Prediction) -> str:

@@ -99,3 +99,26 @@ def test_hints_are_noted_and_what_is_said_after_a_task_depends_on_how_it_was_pas
     told.click()
     wait_for(reason.is_visible, WAIT)
     context.close()
+
+
+SOON = """() => {
+    const { simulation } = site.stage, ticks = seconds => Math.round(seconds / simulation.data.dt)
+    simulation.set({ K1: 600, K2: 50 })
+    simulation.advance(ticks(1))
+    simulation.hold(true)
+    simulation.advance(ticks(2.6))
+    simulation.reset()
+    return Object.keys(site.student.notes.tasks)
+}"""
+
+
+def test_a_task_that_is_done_counts_however_soon_its_run_ends(browser: Browser, page: Page) -> None:
+    """The page judges the tasks twice a second; a run may be reset at once after its success."""
+    context = browser.new_context()
+    other = context.new_page()
+    other.goto(page.url)
+    wait_for(lambda: other.evaluate("'packed' in window"), WAIT)
+    task = other.evaluate(TASK)
+    wait_for(lambda: other.evaluate("site.ready"), WAIT)
+    assert other.evaluate(SOON) == [task]
+    context.close()

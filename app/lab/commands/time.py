@@ -46,6 +46,7 @@ class Reset(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
+        lab.lessons.judge(lab.simulation)
         lab.simulation.reset()
         lab.show_message("")
 

@@ -25,6 +25,8 @@ export class Recorded extends Simulation {
     private times: number[] = []
     private samples: Record<Robot, Record<string, number[]>>
 
+    /** Called before the record of a run is lost, by a reset or another path. */
+    ending: () => void = () => {}
     /** Called if a parameter gets a value that makes another robot. */
     remake: (name: string, value: Setting) => void = () => {}
 
@@ -121,11 +123,13 @@ export class Recorded extends Simulation {
     }
 
     override reset(): void {
+        this.ending()
         this.note("reset")
         this.restart()
     }
 
     override choose(path: number): void {
+        this.ending()
         const { lengths, paths } = this.begun
         this.path = path
         this.paths[path]!.restore()

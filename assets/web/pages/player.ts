@@ -56,7 +56,7 @@ export class Player implements Robots {
             // keys of the focused control are not the figure's
             if ((event.target as HTMLElement).closest("textarea, select, input, summary, a")) event.stopPropagation()
         })
-        setInterval(() => this.tasks.forEach(task => task.follow()), JUDGED)
+        setInterval(() => this.judge(), JUDGED)
         const asked = this.asked()
         void this.open(asked >= 0 ? asked : Math.min(this.notes.step, page.steps.length), asked >= 0)
     }
@@ -87,6 +87,7 @@ export class Player implements Robots {
     /** Show a step; after the last one comes the end. */
     async open(wanted: number, move = true): Promise<void> {
         const { page, student } = this
+        this.judge()
         this.index = Math.min(Math.max(wanted, 0), page.steps.length)
         const turn = ++this.turn
         this.stage?.close()
@@ -137,6 +138,11 @@ export class Player implements Robots {
         if ((await this.recall([this.index])) && turn === this.turn) this.run()
     }
 
+    /** Evaluate the tasks now; also before the record of a run is lost. */
+    private judge(): void {
+        for (const task of this.tasks) task.follow()
+    }
+
     private put(stage: Stage, step: StepData): void {
         const { page } = this
         this.stage = stage
@@ -144,6 +150,7 @@ export class Player implements Robots {
         stage.figure.strip.follows(step)
         if (page.figures[step.figure]!.form.groups.length) this.view?.offer(stage.figure.form.element)
         this.placePlots()
+        stage.simulation.ending = () => this.judge()
         stage.simulation.remake = (name, value) => void this.remake(name, value)
     }
 

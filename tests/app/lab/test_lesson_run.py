@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.history import RECENT
-from onpath.app.lab.lab import Lab
+from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.lesson_record import Beginning, record_of
-from onpath.app.lab.lesson_run import LessonRun
+from onpath.app.lab.lesson_run import CHECK_INTERVAL, LessonRun
 from onpath.app.lab.sketches import sketched
 from onpath.lessons.action_schema import Action
 from onpath.lessons.checks import judge
@@ -143,6 +143,22 @@ def test_a_task_fails_then_passes_and_stays_passed(lab: Lab) -> None:
     do(lab, c.Reset())
     run(lab, 1.0)
     assert "hold" in lab.lessons.notes.tasks
+
+
+@pytest.mark.parametrize(
+    "command", [c.Reset(), c.GoToStep(-1), c.GoToStep(1), c.BeginStepAnew(), c.CloseLesson()]
+)
+def test_a_task_that_is_done_counts_however_soon_its_run_ends(lab: Lab, command: Command) -> None:
+    """The tasks are judged every half second; a run may end at once after its success."""
+    for waited in range(0, CHECK_INTERVAL, 7):
+        lab.lessons.progress = Progress()
+        do(lab, c.OpenLesson(NAME), c.GoToStep(3), c.GoToStep(3))
+        run(lab, waited * FRAME)
+        assert lab.lessons.step_is("task") and not lab.lessons.notes.tasks
+        do(lab, c.Hold(True))
+        run(lab, 1.0)
+        do(lab, command)
+        assert "hold" in lab.lessons.progress.notes[NAME].tasks
 
 
 @pytest.mark.parametrize("frame", [0.7 / 60, 1 / 60, 1.3 / 60])
