@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import logging
 import shlex
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from onpath.app.common.announced import announced
 from onpath.models.errors import Message
-from onpath.models.robot_files.file_chain import Options
+from onpath.models.robot_files.file_chain import Options, TipAt
 from onpath.models.systems.catalogue import add_robot
 from onpath.models.systems.chain_robot import chain_entry
 from onpath.models.systems.guessed_numbers import told_guess
@@ -27,12 +28,14 @@ class GivenFile:
     Attributes:
         tips: that the file suggests, the best first.
         tip: of the robot.
+        places: see `FileChain`.
     """
 
     file: Path
     options: Options
     tips: tuple[str, ...]
     tip: str
+    places: Mapping[str, TipAt]
 
     def with_tip(self, tip: str) -> GivenFile:
         """The same file with another one of its tips."""
@@ -85,6 +88,7 @@ def read_file(file: Path, options: Options) -> ReadFile:
         options=options,
         tips=read.tips,
         tip=options.tip or next(iter(read.tips), ""),
+        places=read.places,
     )
     return ReadFile(source, given, tuple(remarks.values()))
 
@@ -99,6 +103,14 @@ def add_read(read: ReadFile) -> RobotEntry:
 def given_file(robot: str) -> GivenFile | None:
     """The file of a robot in the catalogue; None if it is not from a file that was given."""
     return _FILES.get(robot)
+
+
+def other_tips(robot: str) -> dict[str, TipAt]:
+    """The tips that a robot's file suggests besides its own, and where they are."""
+    given = _FILES.get(robot)
+    if given is None:
+        return {}
+    return {name: given.places[name] for name in given.tips if name != given.tip}
 
 
 def built_with(given: GivenFile) -> str:

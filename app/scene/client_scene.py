@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import viser
 
+from onpath.app.common.robot_files import other_tips
 from onpath.app.common.work_thread import WorkThread
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
@@ -66,6 +67,7 @@ class ClientScene:
         look: how it is drawn.
         course: the lessons, whose steps switch drawings on.
         post: takes the commands of the mouse; those on another's lab are ignored.
+        choose_tip: gives the lab the named robot from a file with another tip.
         switches: names of the drawings that are switched on; see `Overlays`.
 
     Attributes:
@@ -83,8 +85,10 @@ class ClientScene:
         look: Look,
         course: Course,
         post: Post,
+        choose_tip: Callable[[str, str], None],
         switches: set[str],
     ) -> None:
+        self._choose_tip = choose_tip
         self.client, self.number, self.switches = client, number, switches
         self._look, self._post = look, post
         self.pull = IN_PATH_PLANE
@@ -189,7 +193,7 @@ class ClientScene:
         self._is_placed = False
         self.client.gui.configure_theme(dark_mode=look.dark)
         stage = stage_of(robot, DARK if look.dark else LIGHT, look.plain)
-        callbacks = SceneCallbacks() if first.key.student else _callbacks(self._post, robot)
+        callbacks = SceneCallbacks() if first.key.student else self._callbacks(robot)
         self._scene = Scene(self.client, stage, callbacks, titled=False)
         self._scene.build(first)
         one_at_a_time.rest()
@@ -215,6 +219,8 @@ class ClientScene:
         overlays.follow(snapshot)
         scene.show_singular_zone("zone" in self.switches and self._robot.frame.p == 2)
         scene.show_start("start" in self.switches)
+        tips = other_tips(self._robot.name) if "tips" in self.switches else {}
+        scene.show_tips(tips, motion, self._robot.reach)
         self._frame_camera(motion.path.points)
 
     def _frame_camera(self, path: Array) -> None:
@@ -234,24 +240,26 @@ class ClientScene:
             self._framed = shape
             self._scene.frame_camera(_top(height), path if self._on_path else None)
 
+    def _callbacks(self, robot: Robot) -> SceneCallbacks:
+        post = self._post
+
+        def move(index: int, at: Array) -> None:
+            post(c.MovePoint(index, plane_coordinates(robot, at), finished=False))
+
+        return SceneCallbacks(
+            on_grab=lambda name, at: post(c.Grab(name, robot.output_at(at))),
+            on_release=lambda name: post(c.Release(name)),
+            on_point_dragged=move,
+            on_point_drag_end=lambda _: post(c.EndMove()),
+            on_point_selected=lambda index: post(c.SelectPoint(index)),
+            on_wall_moved=lambda at: post(c.MoveWall(plane_coordinates(robot, at))),
+            on_wall_turned=lambda end, at: post(c.SwingWall(end, plane_coordinates(robot, at))),
+            on_tip_chosen=lambda tip: self._choose_tip(robot.name, tip),
+            on_joint_dragged=lambda joint, at: post(c.DragJoint(joint, robot.output_at(at))),
+            on_start_moved=lambda at: post(c.MoveStart(plane_coordinates(robot, at))),
+        )
+
 
 def _top(height: float) -> float:
     """How much of a canvas the robots' titles cover, [px]."""
     return min(TITLES, MOST_TITLES * height)
-
-
-def _callbacks(post: Post, robot: Robot) -> SceneCallbacks:
-    def move(index: int, at: Array) -> None:
-        post(c.MovePoint(index, plane_coordinates(robot, at), finished=False))
-
-    return SceneCallbacks(
-        on_grab=lambda name, at: post(c.Grab(name, robot.output_at(at))),
-        on_release=lambda name: post(c.Release(name)),
-        on_point_dragged=move,
-        on_point_drag_end=lambda _: post(c.EndMove()),
-        on_point_selected=lambda index: post(c.SelectPoint(index)),
-        on_wall_moved=lambda at: post(c.MoveWall(plane_coordinates(robot, at))),
-        on_wall_turned=lambda end, at: post(c.SwingWall(end, plane_coordinates(robot, at))),
-        on_joint_dragged=lambda joint, at: post(c.DragJoint(joint, robot.output_at(at))),
-        on_start_moved=lambda at: post(c.MoveStart(plane_coordinates(robot, at))),
-    )

@@ -43,6 +43,7 @@ class SceneCallbacks:
         on_wall_moved: the wall's middle has a new position, shape (3,), in the robot's frame [m].
         on_wall_turned: an end of the wall, 1 or -1, must point at a position, shape (3,), [m].
         on_start_moved: the start of the next run has a new position, shape (3,), [m].
+        on_tip_chosen: the tip with a name was pressed.
         on_joint_dragged: the link behind the joint with a number is dragged to a position, shape
             (3,), [m].
     """
@@ -56,6 +57,7 @@ class SceneCallbacks:
     on_wall_turned: Callable[[int, np.ndarray], None] = _ignore
     on_start_moved: Callable[[np.ndarray], None] = _ignore
     on_joint_dragged: Callable[[int, np.ndarray], None] = _ignore
+    on_tip_chosen: Callable[[str], None] = _ignore
 
 
 class Mouse:

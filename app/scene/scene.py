@@ -6,7 +6,7 @@ share their nodes (robot_nodes.py, path_nodes.py).
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -30,11 +30,13 @@ from onpath.app.scene.stage import (
 )
 from onpath.app.scene.start_nodes import StartNodes
 from onpath.app.scene.strokes.freehand import FreehandSheets
+from onpath.app.scene.tip_nodes import TipNodes
 from onpath.app.scene.wall_nodes import WallNodes
 from onpath.app.view.captions import Captions
 from onpath.app.viser_adapter.camera import place_camera
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.arrays import Array
+from onpath.models.robot_files.file_chain import TipAt
 
 if TYPE_CHECKING:
     import viser
@@ -84,6 +86,8 @@ class Scene:
             tones=stage.tones,
         )
         self._start = StartNodes(client.scene, self._origins, pointer, hooks.on_start_moved)
+        self._tips: TipNodes | None = None
+        self._on_tip_chosen = hooks.on_tip_chosen
         self._freehand: FreehandSheets | None = None
         self._captions = Captions(words)
         self._zone: PlaneNodes | None = None
@@ -127,6 +131,8 @@ class Scene:
         self.mouse.motion = motion
         poses = poses_of(self._stage, motion)
         self._machine.update(poses)
+        if self._tips is not None:
+            self._tips.follow(poses)
         if self._hands.pulled:
             self._hands.move(poses["tips"])
         if self._path is None or motion.path.version != self._path.version:
@@ -169,6 +175,27 @@ class Scene:
         if visible != self._start.is_shown:
             self._start.show(visible)
             self.mouse.connect_bodies(self._machine.bodies, visible)
+
+    def show_tips(self, tips: Mapping[str, TipAt], motion: Motion, reach: float) -> None:
+        """Show tips that can be chosen by a press, or hide them if there are none.
+
+        Args:
+            reach: of the robot, [m].
+        """
+        if bool(tips) == (self._tips is not None):
+            return
+        if self._tips is not None:
+            self._tips.remove()
+            self._tips = None
+        else:
+            self._tips = TipNodes(
+                scene=self._client.scene,
+                stage=self._stage,
+                tips=tips,
+                poses=poses_of(self._stage, motion),
+                reach=reach,
+                on_choose=self._on_tip_chosen,
+            )
 
     def frame_camera(self, top: float, path: Array | None = None) -> None:
         """Point the client's camera so that both robots fill the canvas below a margin [px].

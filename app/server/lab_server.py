@@ -39,7 +39,7 @@ from onpath.app.server.page_context import PageContext
 from onpath.app.server.page_data import PageData
 from onpath.app.server.page_text import PageText
 from onpath.app.server.robot_shapes import prepare_shapes
-from onpath.app.server.robot_tips import Remark, RobotTips
+from onpath.app.server.robot_tips import Remark, RobotTips, TipPressed
 from onpath.app.server.server_options import USUAL, ServerOptions
 from onpath.app.server.site_address import reachable_site, site_for_students
 from onpath.app.server.visit import Visit
@@ -311,6 +311,9 @@ class LabServer:
                 look=visit.look,
                 course=self._course,
                 post=lab.post,
+                choose_tip=lambda robot, tip: lab.post(
+                    TipPressed(robot, tip, context.choose_tip, visit.presses)
+                ),
                 switches=context.switches,
             ),
             send=self.visits.channel.send,

@@ -10,6 +10,7 @@ from functools import partial
 from typing_extensions import override
 
 from onpath.app.common.newcomer import NEWCOMER
+from onpath.app.common.presses import Presses
 from onpath.app.common.robot_files import (
     GivenFile,
     ReadFile,
@@ -97,6 +98,31 @@ def _read(given: GivenFile) -> ReadFile | Message:
         return read_file(given.file, given.options)
     except CodedError as error:
         return error.message
+
+
+@dataclass(frozen=True, slots=True)
+class TipPressed(Command):
+    """Choose the tip that was pressed in the picture, as one press of its tab.
+
+    Attributes:
+        choose: see `PageContext.choose_tip`.
+    """
+
+    robot: str
+    tip: str
+    choose: Callable[[str, str], None]
+    presses: Presses
+
+    @override
+    def apply(self, lab: Lab) -> None:
+        def act() -> None:
+            try:
+                self.choose(self.robot, self.tip)
+            except CodedError as error:
+                lab.post(Remark(error.message))
+
+        if not self.presses.run(act):
+            Remark(Message("error.hurry")).apply(lab)
 
 
 @dataclass(frozen=True, slots=True)

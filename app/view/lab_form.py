@@ -16,6 +16,7 @@ from onpath.app.channel.form_messages import (
     FormOption,
 )
 from onpath.app.common.newcomer import NEWCOMER
+from onpath.app.common.robot_files import other_tips
 from onpath.app.lab.commands import (
     AddPoint,
     Identify,
@@ -55,9 +56,9 @@ from onpath.models.paths.path_design import REACH, presets
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.robots import Robot
 
-SWITCHES = (*DRAWINGS, "zone", "start")
+SWITCHES = (*DRAWINGS, "zone", "start", "tips")
 """What a page can draw besides the robots: what lessons can name, the shading of the singular zone,
-and the start of the next run, which can be dragged."""
+the start of the next run, which can be dragged, and the tips that a robot's file suggests."""
 OF_PAGE = ("pull", "tube_sizes", "rank_scale", "least_rank")
 """Fields whose values the page knows; see app/server/page_form.py."""
 SHOWN = "show_"
@@ -81,7 +82,7 @@ GROUP_OF = {
 """Group of a declaration -> group of the form."""
 GROUP_OF_OTHERS = {
     **dict.fromkeys(("pulse", "reset", "start_on_path", "show_start", "wall_forces"), "hand"),
-    **dict.fromkeys(("alpha_note", "deflection", "pull"), "robot"),
+    **dict.fromkeys(("alpha_note", "deflection", "pull", "show_tips"), "robot"),
     **dict.fromkeys(("poles", "pole_plane", "defaults"), "gains"),
     **dict.fromkeys(("add", "remove", "point", "point_z1", "point_z2", "least_rank"), "points"),
     "identify": "reality",
@@ -353,6 +354,10 @@ def _fields(lab: _Lab, marks: Mapping[str, FieldValue], words: Words) -> dict[st
         )
     if link is not None:
         found = list(_with_link(found, words))
+    if other_tips(entry.name):
+        found.append(
+            _switch("show_tips", words("robots.show_tips"), words("robots.show_tips_hint"))
+        )
     found += [
         _switch("show_start", words("start.show"), words("start.show_hint")),
         _button("pulse", words("gains.pulse"), Pulse(), words("gains.pulse_hint")),

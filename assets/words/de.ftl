@@ -2035,6 +2035,8 @@ robot_file-no_description = { $name } aus robot_descriptions hat keine lesbare D
 ## Endpunkte, die die Datei eines Roboters nahelegt
 
 robots-tip = Endpunkt { $tip }
+robots-show_tips = Andere Endpunkte zeigen
+robots-show_tips_hint = Kugeln in der Szene, mit Namen: die Glieder, die nach der Datei des Roboters sein Ende sein können. Ein Druck auf eine, und der Roboter wird mit ihr gebaut.
 robots-build = Er wird gebaut, wenn man ihn wählt; das dauert einige Sekunden.
 robots-no_such_tip = keine Datei dieses Labors legt diesen Endpunkt nahe
 robots-waiting = Ein anderer Roboter wird gerade gebaut; danach kommt deiner …

@@ -1627,6 +1627,8 @@ robot_file-no_description = { $name } of robot_descriptions has no file that can
 ## Tips that a robot's file suggests
 
 robots-tip = end-point { $tip }
+robots-show_tips = Show other end-points
+robots-show_tips_hint = Balls in the scene, with names: the links that the robot's file suggests as its end. Press one, and the robot is built with it.
 robots-build = It is built when you choose it, which takes some seconds.
 robots-no_such_tip = no file of this lab suggests that end-point
 robots-waiting = Another robot is being built; yours comes next …

@@ -46,6 +46,19 @@ class Options:
     mass: float | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class TipAt:
+    """Where a link or site is that may be the tip.
+
+    Attributes:
+        body: of the chain that it moves with, counted from 1; 0: the base.
+        place: in the frame of that body, [m].
+    """
+
+    body: int
+    place: tuple[float, float, float]
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class FileChain:
     """What is read from a file.
@@ -56,6 +69,7 @@ class FileChain:
         remarks: what has been left out or is unusual.
         guesses: what the file does not say.
         tips: links that may be the tip, best first, at most five; the chosen one is the first.
+        places: where their origins are.
         rests: what the motion depends on besides the file and the options, as text.
     """
 
@@ -64,6 +78,7 @@ class FileChain:
     remarks: tuple[Message, ...]
     guesses: tuple[Guess, ...]
     tips: tuple[str, ...]
+    places: Mapping[str, TipAt]
     rests: str = ""
 
 
@@ -214,3 +229,9 @@ def rounded(values: Array | float) -> Array:
         return np.asarray(values, dtype=float)
     decimals = DIGITS - 1 - int(np.floor(np.log10(largest)))
     return np.round(values, decimals)
+
+
+def tip_at(body: int, place: Array) -> TipAt:
+    """`TipAt` of a place as an array."""
+    x, y, z = (float(each) for each in place)
+    return TipAt(body, (x, y, z))

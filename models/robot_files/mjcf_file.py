@@ -23,11 +23,13 @@ from onpath.models.robot_files.file_chain import (
     Group,
     Options,
     RigidTransform,
+    TipAt,
     aligned,
     check_joints,
     exact,
     guessed_tip,
     locked_guesses,
+    tip_at,
     turn,
 )
 from onpath.models.robot_files.file_masses import DENSITY, LinkMass, mass_factor, mass_guess
@@ -118,8 +120,18 @@ class _Model:
             remarks=tuple(self._remarks()),
             guesses=(*self._guesses(tips[0]), *self._mass_guess(weighed), *guesses),
             tips=tips,
+            places=dict(self._tip_places(tips, frames)),
             rests=numbers,
         )
+
+    def _tip_places(
+        self, tips: Sequence[str], frames: Sequence[tuple[int, RigidTransform]]
+    ) -> Iterator[tuple[str, TipAt]]:
+        """Where each suggested tip is."""
+        for name in tips:
+            body, place = self._tip(name)
+            number, here = frames[body]
+            yield name, tip_at(number, (here @ place).translation)
 
     def _link_mass(self, body: int, here: RigidTransform, factor: float) -> LinkMass:
         """The mass of a body times a factor, in the frame of its group."""

@@ -24,6 +24,7 @@ from onpath.models.robot_files.file_chain import (
     Group,
     Options,
     RigidTransform,
+    TipAt,
     aligned,
     check_joints,
     exact,
@@ -31,6 +32,7 @@ from onpath.models.robot_files.file_chain import (
     locked_guess,
     locked_guesses,
     some_names,
+    tip_at,
     turn,
 )
 from onpath.models.robot_files.file_masses import LinkMass, is_dummy
@@ -65,6 +67,7 @@ def read_urdf(file: Path, root: Element, options: Options) -> FileChain:
         remarks=tuple(tree.remarks()),
         guesses=(*tree.guesses(), *guesses),
         tips=tree.tips,
+        places=tree.places,
         rests=numbers,
     )
 
@@ -91,6 +94,7 @@ class _Tree:
         check_joints(options, self._joints)
         self._places = self._tree()
         self.tips = self._suggested()
+        self.places = dict[str, TipAt]()
         self._tip = self.tips[0]
         self._way = self._joints_to(self._tip)
         self._held = self._held_joints()
@@ -220,6 +224,8 @@ class _Tree:
         waiting = [(self._base, 0, RigidTransform())]
         while waiting:
             name, number, place = waiting.pop()
+            if name in self.tips:
+                self.places[name] = tip_at(number, place.translation)
             if name == self._tip:
                 last, tip = number, place
                 _check_last(self._links[name], last, groups)

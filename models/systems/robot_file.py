@@ -18,7 +18,7 @@ from onpath.models.arrays import Array
 from onpath.models.errors import CodedError, Message
 from onpath.models.paths.path_design import USUAL_RADIUS
 from onpath.models.robot_files.chain import Chain
-from onpath.models.robot_files.file_chain import FileChain, Options
+from onpath.models.robot_files.file_chain import FileChain, Options, TipAt
 from onpath.models.robot_files.file_reading import read_file
 from onpath.models.robot_files.guesses import Guess
 from onpath.models.robot_files.urdf_file import read_urdf
@@ -79,13 +79,14 @@ class RobotFile:
             set-up with it is not taken for another robot's.
         circle: the largest radius of circles about home that it can follow, [m].
         remarks: what has been left out or is unusual.
-        tips: see `FileChain.tips`.
+        tips, places: see `FileChain`.
     """
 
     entry: RobotEntry
     circle: float
     remarks: tuple[Message, ...]
     tips: tuple[str, ...]
+    places: Mapping[str, TipAt]
 
     @property
     def guesses(self) -> tuple[Guess, ...]:
@@ -182,6 +183,7 @@ def _made(file: Path, name: str, read: FileChain, pose: Mapping[str, float]) -> 
         circle=circle,
         remarks=read.remarks,
         tips=read.tips,
+        places=read.places,
     )
 
 

@@ -89,7 +89,7 @@ class Drawing:
             first, *others = snapshots
             assert isinstance(first, PageSnapshot)
             post, look = self.posted.append, Look()
-            scene = ClientScene(self._client, first, 1, look, self._course, post, set())
+            scene = ClientScene(self._client, first, 1, look, self._course, post, print, set())
             for snapshot in others:
                 assert scene.is_ready
                 scene.show(snapshot)
@@ -211,7 +211,7 @@ class Shown:
         client.scene.reset()
         first = take_page_snapshot(lab, 1.0)
         course = lab.lessons.course
-        self.scene = ClientScene(client, first, 1, self.look, course, print, self.switches)
+        self.scene = ClientScene(client, first, 1, self.look, course, print, print, self.switches)
 
     def follow(self, *commands: c.Command) -> None:
         """Show the lab after some commands."""
