@@ -333,7 +333,11 @@ def _asked(step: Step) -> dict[str, object]:
         "number of reasons or hidden words": [
             (b.why, len(b.reasons), len(b.hidden)) for b in step.predictions()
         ],
-        "right number": [(b.number, b.tolerance) for b in blocks if isinstance(b, NumberQuestion)],
+        "right or wrong numbers": [
+            (b.number, b.tolerance, [each.number for each in b.wrong])
+            for b in blocks
+            if isinstance(b, NumberQuestion)
+        ],
         "misconceptions": [bool(b.misconception) for b in blocks if isinstance(b, Quiz)],
         f"texts ({', '.join(NOTES)})": [
             tuple(bool(getattr(b, name, "")) for name in NOTES) for b in step.blocks

@@ -66,6 +66,8 @@ class Notes(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         quiz: chosen options, by step and block.
         numbers: answers that are numbers, by step and block.
         written: answers in the student's own words, by step and block.
+        twice: quizzes and questions for numbers that have been answered a second time, by step and
+            block.
         asked_again: predictions that the teacher has asked again after a discussion, by step.
         second: the answers to those.
         marks: keys of the chosen options; see `lessons.kept`.
@@ -84,6 +86,7 @@ class Notes(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     quiz: dict[Key, Index] = {}
     numbers: dict[Key, float] = {}
     written: dict[Key, Written] = {}
+    twice: Annotated[tuple[Key, ...], msgspec.Meta(max_length=1000)] = ()
     asked_again: Annotated[tuple[Key, ...], msgspec.Meta(max_length=1000)] = ()
     second: dict[Key, Answer] = {}
     marks: dict[Key, Key] = {}

@@ -45,9 +45,14 @@ def _(part: Quiz) -> Quiz:
     return replace(_html(part, "question", "misconception"), options=_options(part))
 
 
-@rendered.register(NumberQuestion)
-@rendered.register(OpenQuestion)
-def _(part: NumberQuestion | OpenQuestion) -> NumberQuestion | OpenQuestion:
+@rendered.register
+def _(part: NumberQuestion) -> NumberQuestion:
+    wrong = tuple(_html(each, "answer") for each in part.wrong)
+    return replace(_html(part, "question", "answer"), wrong=wrong)
+
+
+@rendered.register
+def _(part: OpenQuestion) -> OpenQuestion:
     return _html(part, "question", "answer")
 
 

@@ -95,13 +95,26 @@ class Quiz(Data, frozen=True):
     misconception: str = ""
 
 
+class WrongNumber(Data, frozen=True):
+    """A wrong number that is known, since it comes from a known mistake.
+
+    Attributes:
+        number: in the question's unit.
+        answer: what is said to those who give it, without the right number.
+    """
+
+    number: float
+    answer: str
+
+
 class NumberQuestion(Data, frozen=True):
     """A question whose answer is a number, which is checked.
 
     Attributes:
         number: the right answer, in `unit`.
         tolerance: largest accepted deviation, in `unit`.
-        answer: shown after the student has answered.
+        answer: shown after a right or a second answer.
+        wrong: wrong numbers that are answered by name, within the same tolerance.
     """
 
     question: str
@@ -109,10 +122,18 @@ class NumberQuestion(Data, frozen=True):
     tolerance: float
     answer: str
     unit: str = ""
+    wrong: tuple[WrongNumber, ...] = ()
 
     def accepts(self, given: float) -> bool:
         """Whether a number is right, up to rounding."""
-        return abs(given - self.number) <= self.tolerance * (1 + 1e-9)
+        return self._near(given, self.number)
+
+    def known(self, given: float) -> int | None:
+        """The index of the known wrong number that is given, or None."""
+        return next((i for i, w in enumerate(self.wrong) if self._near(given, w.number)), None)
+
+    def _near(self, given: float, number: float) -> bool:
+        return abs(given - number) <= self.tolerance * (1 + 1e-9)
 
 
 class OpenQuestion(Data, frozen=True):

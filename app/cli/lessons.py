@@ -116,14 +116,14 @@ def minutes_table(course: Course, steps: bool) -> str:
 
 
 def rates_table(course: Course) -> str:
-    """How often strategies that read no physics are right; empty if nothing is asked.
+    """How often strategies that read no physics are right; empty if too little is asked.
 
     One line per strategy, one column per kind of question and language. An exclamation mark is
     behind a rate that is not by chance.
     """
-    from onpath.lessons.strategies import ALLOWED, rates
+    from onpath.lessons.strategies import ALLOWED, FEWEST, rates
 
-    found = [each for each in rates(course) if each.count]
+    found = [each for each in rates(course) if each.count >= FEWEST]
     groups = list(dict.fromkeys(each.group for each in found))
     cells = {(each.strategy, each.group): str(each) for each in found}
     if not found:

@@ -257,6 +257,8 @@ class LessonState:
             raise CodedError("lesson.no_such_option")
         assert self.lesson is not None
         key = f"{self.index}.{block}"
+        before = None if key in self.notes.unknown else self.notes.quiz.get(key)
+        self._note_second(key, before, option)
         self._note_chosen(key, mark_of(self.lesson, key, option), "quiz", option)
 
     def answer_number(self, block: int, given: float) -> None:
@@ -267,8 +269,9 @@ class LessonState:
         """
         if not isinstance(self._block(block), NumberQuestion):
             raise CodedError("lesson.no_such_option")
-        number = kept_number(given)
-        self.note(numbers={**self.notes.numbers, f"{self.index}.{block}": number})
+        number, key = kept_number(given), f"{self.index}.{block}"
+        self._note_second(key, self.notes.numbers.get(key), number)
+        self.note(numbers={**self.notes.numbers, key: number})
 
     def answer_in_words(self, block: int, typed: str) -> None:
         """Answer an open question, or take the answer back with an empty one.
@@ -281,6 +284,11 @@ class LessonState:
         key, text = f"{self.index}.{block}", kept_text(typed)
         others = {k: kept for k, kept in self.notes.written.items() if k != key}
         self.note(written={**others, **({key: text} if text else {})})
+
+    def _note_second(self, key: str, before: float | None, given: float) -> None:
+        """Note that a question of the open step is answered again, and otherwise than before."""
+        if before not in (None, given) and not self.is_test:
+            self.note(twice=tuple(dict.fromkeys((*self.notes.twice, key))))
 
     def _block(self, block: int) -> Block | None:
         """A block of the open step, or None."""

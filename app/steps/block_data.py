@@ -29,7 +29,8 @@ def block_data(part: StepPart, lesson: Lesson, index: int, words: Words) -> dict
     elif isinstance(block, Choice | Quiz) and part.told:
         data["right"] = [option.right for option in block.options].index(True)
     elif isinstance(block, NumberQuestion) and part.told:
-        data |= {"number": block.number, "tolerance": block.tolerance}
+        wrong = [each.number for each in block.wrong]
+        data |= {"number": block.number, "tolerance": block.tolerance, "wrong": wrong}
     elif isinstance(block, Task):
         data["limits"] = limits_data(block, lesson.laws_shown(index), words)
     return data

@@ -6,7 +6,14 @@ from onpath.lessons.words import Words
 
 _PLAIN = (
     *("lesson.playing", "lesson.replay", "lesson.play", "lesson.read", "lesson.predict_before"),
-    *("lesson.right", "lesson.not_quite", "lesson.no_number", "answer.check", "answer.keep"),
+    *(
+        "lesson.right",
+        "lesson.not_quite",
+        "lesson.once_more",
+        "lesson.no_number",
+        "answer.check",
+        "answer.keep",
+    ),
     *("lesson.committed", "lesson.drawn", "lesson.skipped", "lesson.passed", "report.right"),
     "lesson.happened",
     *("site.draw_first", "site.skipped", "site.again", "site.link_only_lab", "site.symbols"),

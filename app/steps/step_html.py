@@ -28,6 +28,7 @@ class StepPart:
         order: the order of a question's options, as indices; by default the author's.
         lettered: whether the options have letters, of which a class may speak.
         told: whether the page has the answers, which it may show at the right time.
+        replies: the wrong options or numbers of which it has the answers, if not `told`.
         hints: how many hints of a task are shown; None if the reader unfolds them.
         way: the way in which a task was passed; None if the page's script decides that.
         remark: what is said above a question; may be empty.
@@ -41,6 +42,7 @@ class StepPart:
     order: tuple[int, ...] = ()
     lettered: bool = False
     told: bool = True
+    replies: tuple[int, ...] = ()
     hints: int | None = None
     way: int | None = None
     remark: str = ""

@@ -130,15 +130,22 @@ def _part(lesson: Lesson, block_index: int, run: LessonView) -> StepPart | None:
         )
     if isinstance(block, Quiz):
         unknown = run.is_unknown(key)
+        chosen = None if unknown or run.is_test else notes.quiz.get(key)
+        told = chosen is not None and (key in notes.twice or block.options[chosen].right)
         return replace(
             part,
             order=run.order(block, key),
             lettered=True,
-            told=key in notes.quiz and not unknown and not run.is_test,
+            told=told,
+            replies=() if chosen is None or told else (chosen,),
             remark=run.words("lesson.unknown") if unknown else "",
         )
-    answered = notes.numbers if isinstance(block, NumberQuestion) else notes.written
-    return replace(part, told=key in answered)
+    if not isinstance(block, NumberQuestion):
+        return replace(part, told=key in notes.written)
+    given = notes.numbers.get(key)
+    known = None if given is None else block.known(given)
+    told = given is not None and (key in notes.twice or block.accepts(given))
+    return replace(part, told=told, replies=() if known is None or told else (known,))
 
 
 def _asked(lesson: Lesson, index: int, run: LessonView) -> StepPart:

@@ -57,6 +57,10 @@ def number_faults(question: NumberQuestion) -> Iterator[str]:
         yield f"tolerance = {question.tolerance:g}: above 0, and at most {HIGHEST:g}"
     else:
         yield from zero_faults(question.number, question.tolerance)
+    numbers = [question.number, *(each.number for each in question.wrong)]
+    for i, number in enumerate(numbers[1:], 1):
+        if any(abs(number - other) <= 2 * question.tolerance for other in numbers[:i]):
+            yield f"wrong number {number:g}: within twice the tolerance of another one"
 
 
 def option_faults(options: Sequence[Option]) -> Iterator[str]:

@@ -68,6 +68,7 @@ def _notes(lesson: Lesson) -> Notes:
         quiz=dict.fromkeys(_blocks(lesson, Quiz), 10),
         numbers=dict.fromkeys(_blocks(lesson, NumberQuestion), LONG_NUMBER),
         written=dict.fromkeys(_blocks(lesson, OpenQuestion), WORDS),
+        twice=(*_blocks(lesson, Quiz), *_blocks(lesson, NumberQuestion)),
         asked_again=tuple(asked),
         second=answers,
         marks=dict.fromkeys(marks, "x" * 40),

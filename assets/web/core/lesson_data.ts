@@ -156,7 +156,7 @@ export type BlockData =
     // Links have actions: those above on a page without a server, those of channel/messages.ts in the lab.
     | { kind: "text"; links: (unknown[] | null)[]; when?: [string, number[]] }
     | { kind: "choice" | "quiz"; right?: number } // a lab keeps it to itself until there is an answer
-    | { kind: "number"; number?: number; tolerance?: number }
+    | { kind: "number"; number?: number; tolerance?: number; wrong?: number[] }
     | { kind: "open" }
     | SketchData
     | TaskData

@@ -9,8 +9,16 @@ const STATISTICS: Record<string, (values: number[]) => number> = {
     max: values => Math.max(...values), min: values => Math.min(...values), final: values => values[values.length - 1]!,
 }
 
-export function accepted(given: number, { number = NaN, tolerance = 0 }: Extract<BlockData, { kind: "number" }>): boolean {
+type NumberData = Extract<BlockData, { kind: "number" }>
+
+export function accepted(given: number, { number = NaN, tolerance = 0 }: NumberData): boolean {
     return Math.abs(given - number) <= tolerance * (1 + 1e-9)
+}
+
+/** The known wrong number that is given, if any. */
+export function known(given: number, { wrong = [], tolerance }: NumberData): number | undefined {
+    const found = wrong.findIndex(number => accepted(given, { kind: "number", number, tolerance }))
+    return found < 0 ? undefined : found
 }
 
 export function showOwn(page: PageData, notes: Notes): void {

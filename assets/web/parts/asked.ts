@@ -4,7 +4,7 @@ import { made } from "../core/dom"
 import { draftOf, keepDraft } from "../core/drafts"
 import type { BlockData, PageData } from "../core/lesson_data"
 import { localized, phrase } from "../core/words"
-import { accepted } from "../lessons/own"
+import { accepted, known } from "../lessons/own"
 import type { Student } from "../lessons/student"
 
 /** The order of the options for a student, which is always the same. */
@@ -26,6 +26,14 @@ export function judged(page: PageData, element: Element, right: number | undefin
     return made("div", "judged", ...lines)
 }
 
+/** What is said to a first answer that is wrong, before the right one is shown. */
+function repliedTo(page: PageData, reply: Element | null): HTMLElement[] {
+    const own = [...reply?.cloneNode(true).childNodes ?? []]
+    const lines = [made("p", "wrong", phrase(page, "lesson.not_quite"))]
+    if (own.length) lines.push(made("div", "", ...own))
+    return [...lines, made("p", "", phrase(page, "lesson.once_more"))]
+}
+
 /** Make a question answerable. */
 export function ask(page: PageData, element: HTMLElement, block: BlockData, key: string, student: Student): void {
     const { notes } = student
@@ -39,13 +47,23 @@ export function ask(page: PageData, element: HTMLElement, block: BlockData, key:
     const kept = () => (block.kind === "quiz" ? notes.quiz : block.kind === "number" ? notes.numbers : notes.written)[key]
     const show = () => {
         const own = kept()
-        if (own === undefined || !after) return
-        if (block.kind === "quiz") return told.replaceChildren(...judged(page, element, block.right, own as number).childNodes)
-        if (block.kind === "number") {
-            const right = accepted(own as number, block)
-            told.className = `verdict ${right ? "right" : "wrong"}`
-            told.textContent = phrase(page, right ? "lesson.right" : "lesson.not_quite")
+        if (own === undefined || page.test) return
+        const first = notes.first[key] === own // a lab keeps what is right to itself until the second answer
+        if (block.kind === "quiz") {
+            if (block.right === undefined || (first && own !== block.right)) return told.replaceChildren(...repliedTo(page, element.querySelector(`[data-answer="${own}"]`)))
+            return told.replaceChildren(...judged(page, element, block.right, own as number).childNodes)
         }
+        if (block.kind === "number") {
+            const right = block.number !== undefined && accepted(own as number, block)
+            told.className = "verdict"
+            if (block.number === undefined || (first && !right)) {
+                if (after) after.hidden = true
+                const wrong = block.number === undefined ? "" : `="${known(own as number, block)}"` // a lab has sent the only one
+                return told.replaceChildren(...repliedTo(page, element.querySelector(`[data-answer${wrong}]`)))
+            }
+            told.replaceChildren(made("p", right ? "right" : "wrong", phrase(page, right ? "lesson.right" : "lesson.not_quite")))
+        }
+        if (!after) return
         after.hidden = false
         after.open = true
     }

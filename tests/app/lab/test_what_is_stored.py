@@ -154,6 +154,7 @@ def known_keys(lesson: Lesson) -> dict[str, set[str]]:
         "quiz": blocks(Quiz),
         "numbers": blocks(NumberQuestion),
         "written": blocks(OpenQuestion),
+        "twice": blocks(Quiz) | blocks(NumberQuestion),
         "asked_again": set(),
         "second": set(),
         "marks": set(lesson.keys),

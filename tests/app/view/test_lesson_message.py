@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from html import unescape
+from itertools import product
 from typing import Any
 
 import pytest
@@ -133,24 +134,49 @@ def places(kind: type) -> list[tuple[str, int, int]]:
 
 @pytest.mark.parametrize(("name", "index", "place"), places(Quiz))
 def test_a_quiz_is_judged_once_it_is_answered(lab: Lab, name: str, index: int, place: int) -> None:
+    """What is right is told with a right or a second answer, the reply to a wrong one at once."""
     do(lab, c.SetLanguage("en"))
-    at(lab, name, index, quiz={f"{index}.{place}": 1})
-    message, block = told(lab), step_of(lab).blocks[place]
+    key = f"{index}.{place}"
+    at(lab, name, index)
+    block = step_of(lab).blocks[place]
     assert isinstance(block, Quiz)
-    data = message["steps"][index]["blocks"][place]
-    assert block.options[data["right"]].right
-    assert message["notes"]["quiz"] == {f"{index}.{place}": 1}
-    assert message["sections"][str(index)].count("data-answer") >= len(block.options)
-
-
-@pytest.mark.parametrize("kind", [NumberQuestion, OpenQuestion])
-def test_a_number_and_a_text_are_kept_and_the_model_answer_is_told(lab: Lab, kind: type) -> None:
-    for name, index, place in places(kind):
-        key = f"{index}.{place}"
-        given = {"numbers": {key: 3.5}} if kind is NumberQuestion else {"written": {key: "<b>so"}}
-        at(lab, name, index, **given)
+    for option, twice in product(range(len(block.options)), ((), (key,))):
+        at(lab, name, index, quiz={key: option}, twice=twice)
         message = told(lab)
-        assert {n: message["notes"][n] for n in given} == given
+        data = message["steps"][index]["blocks"][place]
+        is_told = block.options[option].right or bool(twice)
+        assert ("right" in data) == is_told and (not is_told or block.options[data["right"]].right)
+        assert message["notes"]["quiz"] == {key: option}
+        answers = re.findall(r'data-answer="(.)"', message["sections"][str(index)])
+        assert answers == ([*map(str, range(len(block.options)))] if is_told else [str(option)])
+
+
+def test_a_number_is_judged_once_it_is_answered(lab: Lab) -> None:
+    """As a quiz is; a wrong number that is known is replied to."""
+    do(lab, c.SetLanguage("en"))
+    for name, index, place in places(NumberQuestion):
+        key = f"{index}.{place}"
+        at(lab, name, index)
+        block = step_of(lab).blocks[place]
+        assert isinstance(block, NumberQuestion)
+        known = [each.number for each in block.wrong]
+        for number, twice in product((block.number, block.number + 1e3, *known), ((), (key,))):
+            at(lab, name, index, numbers={key: number}, twice=twice)
+            message = told(lab)
+            data = message["steps"][index]["blocks"][place]
+            is_told = number == block.number or bool(twice)
+            assert data.get("number") == (block.number if is_told else None)
+            assert message["notes"]["numbers"] == {key: number}
+            answers = [int(i) for i in re.findall(r'data-answer="(.)"', html(message))]
+            replies = [known.index(number)] if number in known else []
+            assert answers == ([*range(len(known))] if is_told else replies)
+
+
+def test_a_text_is_kept_and_the_model_answer_is_told(lab: Lab) -> None:
+    for name, index, place in places(OpenQuestion):
+        at(lab, name, index, written={f"{index}.{place}": "<b>so"})
+        message = told(lab)
+        assert message["notes"]["written"] == {f"{index}.{place}": "<b>so"}
         assert "after" in message["sections"][str(index)]
         at(lab, name, index)
         assert 'class="after"' not in told(lab)["sections"][str(index)]
