@@ -165,10 +165,14 @@ class Pupil:
         wait_for(run.has_played)
         self.tab.wait_until_built()
 
-    def choose(self, block: Choice | Quiz) -> int:
-        """Press an option of a question; returns its index in the lesson's file."""
+    def choose(self, block: Choice | Quiz, again: bool = False) -> int:
+        """Press an option of a question; returns its index in the lesson's file.
+
+        Args:
+            again: whether it is asked a second time, after a wrong answer.
+        """
         right = next(i for i, option in enumerate(block.options) if option.right)
-        index = right if self._right else self._asked % len(block.options)
+        index = right if self._right or again else self._asked % len(block.options)
         self._asked += 1
         options = self.tab.page.locator("#op-column .step.open .options label")
         text = block.options[index].text
@@ -176,13 +180,16 @@ class Pupil:
         options.nth(place).click()
         return index
 
-    def _answer(self, place: int, block: Quiz) -> None:
+    def _answer(self, place: int, block: Quiz, again: bool = False) -> None:
         notes, key = self.tab.lab.lessons, f"{self.tab.lab.lessons.index}.{place}"
-        index = self.choose(block)
+        index = self.choose(block, again)
         box = self.tab.page.locator(f'#op-column .step.open [data-block="{place}"]')
         box.get_by_role("button").first.click()
         wait_for(lambda: notes.notes.quiz.get(key) == index)
         self.tab.wait_until_built()
+        if not block.options[index].right:
+            self.tab.page.get_by_text("answer once more").first.wait_for()
+            self._answer(place, block, again=True)
 
     def _compute(self, block: NumberQuestion) -> None:
         if not self._right:
