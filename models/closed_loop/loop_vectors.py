@@ -111,7 +111,8 @@ def settings_layout(system: MechanicalSystem, kind: Kind) -> Layout:
 
     Units as in models/systems/parameters.py; "plant" and "model" are the system's parameters as
     they are and as the controller assumes them. Of the gains of single laws it has those of the
-    loop's law, and `Kind.further_gains`.
+    loop's law, and `Kind.further_gains`. What only a drawing has is last, so that all else has the
+    same places for all paths of a figure.
     """
     p, k = system.p, len(system.parameter_names)
     own = {gain.name for gain in law_named(kind.law).own_gains}
@@ -128,7 +129,6 @@ def settings_layout(system: MechanicalSystem, kind: Kind) -> Layout:
             ("level_weights", 3),
             ("level_constant", 1),
             ("plan", PLAN),  # of `Law.plan`; 0: none
-            *((("pieces", 1),) if kind.spline else ()),
             *((name, 1) for name in realism),
             ("hand_active", 1),
             ("hand_target", p),
@@ -141,6 +141,7 @@ def settings_layout(system: MechanicalSystem, kind: Kind) -> Layout:
             ("wall_normal", p),
             ("plant", k),
             ("model", k),
+            *(((name, 1) for name in ("pieces", "duration", "turning")) if kind.spline else ()),
         )
     )
 

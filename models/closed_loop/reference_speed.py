@@ -4,8 +4,22 @@ from __future__ import annotations
 
 import casadi as ca
 
+from onpath.models.control.bend_limit import allowed_turning
 from onpath.models.control.laws.law import PathReference
 from onpath.models.layout import Fields
+
+
+def kept_speed(settings: Fields) -> ca.SX:
+    """The wanted speed of θ, [rad/s].
+
+    That of a drawing is for its usual duration, and at most what its bends allow, see
+    `bend_limit`.
+    """
+    if "turning" not in settings:
+        return settings["speed"]
+    interval = settings["hold_ticks"] * settings["dt"]
+    limit = allowed_turning(settings["K1"], interval) / settings["turning"]
+    return ca.fmin(ca.fmax(settings["speed"] / settings["duration"], -limit), limit)
 
 
 def wanted_speed(state: Fields, settings: Fields) -> tuple[ca.SX, ca.SX]:
@@ -13,7 +27,7 @@ def wanted_speed(state: Fields, settings: Fields) -> tuple[ca.SX, ca.SX]:
 
     It approaches the wanted speed at the rate `ramp`, or is equal to it if that is 0.
     """
-    speed, ramp, now = settings["speed"], settings["ramp"], state["speed_ref"]
+    speed, ramp, now = kept_speed(settings), settings["ramp"], state["speed_ref"]
     rate = ca.fmin(ca.fmax((speed - now) / settings["dt"], -ramp), ramp)
     return ca.if_else(ramp > 0, now, speed), rate
 

@@ -14,7 +14,7 @@ from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loop_vectors import GAINS, LoopLayouts
 from onpath.models.closed_loop.speed_profile import Leg
 from onpath.models.control import composite_control
-from onpath.models.control.bend_limit import bend_limit
+from onpath.models.control.bend_limit import bend_limit, most_turning
 from onpath.models.control.implicit_level import check_level, implicit_level
 from onpath.models.control.laws.law import PLAN
 from onpath.models.control.laws.own import is_text
@@ -175,7 +175,7 @@ def settings_vector(
             "tracker_integral": float(parameters.tracker_integral == "on"),
             "position": float(parameters.task == "position"),
             "target": parameters.target,
-            "speed": speed_on(parameters, curve),
+            "speed": parameters.speed,
             "ramp": parameters.ramp,
             "speed_limit": _speed_limit(robot, parameters, curve),
             "plane": robot.frame.numbers,
@@ -195,13 +195,21 @@ def settings_vector(
             "delay_ticks": parameters.delay * interval,
             "sensor_noise": parameters.sensor_noise,
             "seed": round(parameters.seed),
-            **({"pieces": curve.pieces} if isinstance(curve, SplineCurve) else {}),
             **_push_fields(push, p),
             **_composite_gains(layouts, parameters),
             "plant": robot.plant(parameters),
             "model": robot.model(parameters),
+            **_drawn(curve),
         }
     )
+
+
+def _drawn(curve: Curve) -> dict[str, float]:
+    """The settings that only a drawing has."""
+    if not isinstance(curve, SplineCurve):
+        return {}
+    turning = most_turning(curve)
+    return {"pieces": curve.pieces, "duration": curve.duration, "turning": turning}
 
 
 def speed_on(parameters: Parameters, curve: Curve) -> float:

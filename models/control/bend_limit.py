@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from math import sqrt
+from typing import Any
 
+import casadi as ca
 import numpy as np
 
 from onpath.models.paths.spline_curves import SplineCurve
@@ -25,10 +26,18 @@ def bend_limit(parameters: Parameters, curve: SplineCurve) -> float:
     an arm that is held back slides round the bend. Both were found by runs on random paths. θ is
     the time of a profile that slows for bends, so one limit serves for all of a drawing.
     """
-    allowed = TURN * parameters.control_rate
-    if parameters.K1 > 0:
-        allowed = min(allowed, 2 * sqrt(parameters.K1))
-    return allowed / most_turning(curve)
+    allowed = allowed_turning(parameters.K1, 1 / parameters.control_rate)
+    return float(allowed) / most_turning(curve)
+
+
+def allowed_turning(k1: Any, interval: Any) -> Any:
+    """The largest rate at which the tangent may turn, see `bend_limit`, [rad/s].
+
+    Args:
+        k1: K1, a number or a symbol.
+        interval: T, [s].
+    """
+    return ca.if_else(k1 > 0, ca.fmin(TURN / interval, 2 * ca.sqrt(k1)), TURN / interval)
 
 
 @lru_cache(maxsize=64)

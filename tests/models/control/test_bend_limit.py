@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import casadi as ca
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from onpath.models.closed_loop.simulation import speed_on
+from onpath.models.closed_loop.loop_vectors import loop_layouts
+from onpath.models.closed_loop.reference_speed import kept_speed
+from onpath.models.closed_loop.simulation import FREE, kind_of, settings_vector, speed_on
 from onpath.models.paths.curves import circle
 from onpath.models.systems.catalogue import ROBOTS
 from tests.support.drawings import scrawl
@@ -35,3 +39,8 @@ def test_the_tangent_of_a_drawing_turns_slowly_enough(
     most = min(0.15 * rate, 2 * np.sqrt(k1) if k1 > 0 else np.inf)
     assert turn.max() <= 1.1 * most + 1e-3
     assert speed_on(parameters, circle(0.001)) == speed  # a series keeps its speed
+    robot = ROBOTS["five_bar"].make(parameters)
+    layouts = loop_layouts(robot.system, kind_of("path_following", parameters, curve))
+    settings = layouts.settings.unpack(settings_vector(robot, layouts, parameters, curve, FREE))
+    named = {name: ca.SX(ca.DM(value)) for name, value in settings.items()}
+    assert float(ca.DM(kept_speed(named))) == pytest.approx(slowed, rel=1e-12)  # in a loop
