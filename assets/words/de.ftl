@@ -1651,6 +1651,7 @@ standalone-hint_hold =
     } Wer an der Linie unten zieht, blickt zurück.
 standalone-hint_pull = Mit der Maus oder einem Finger an einer Spitze ziehen. Wer an der Linie unten zieht, blickt zurück.
 # Die Teile, in der Reihenfolge des Laufs: standalone-recorded_start und so weiter
+standalone-hint_raised = Wo die Bahn gestrichelt ist, ist der Stift angehoben.
 standalone-recorded = Im aufgezeichneten Lauf, aber nicht auf dieser Seite: { $parts }.
 standalone-recorded_start = ein anderer Start
 standalone-recorded_profile = ein Tempo-Verlauf

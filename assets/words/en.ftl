@@ -1243,6 +1243,7 @@ standalone-hint_hold =
     } Drag the line below to look back.
 standalone-hint_pull = Pull an end-point with the mouse or a finger. Drag the line below to look back.
 # The parts, in the order of the run: standalone-recorded_start and so on
+standalone-hint_raised = Where the path is dashed, the pen is up.
 standalone-recorded = In the recorded run, but not on this page: { $parts }.
 standalone-recorded_start = another start
 standalone-recorded_profile = a speed profile

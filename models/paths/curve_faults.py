@@ -16,9 +16,9 @@ from onpath.models.errors import Message
 from onpath.models.evaluated import evaluated
 from onpath.models.paths.curves import ORDERS, TERMS, Curve
 from onpath.models.paths.path_checks import (
-    LEAST_MARGIN,
+    DRAWING_CHECKS,
+    FINER,
     LEAST_RADIUS,
-    LEAST_SPEED,
     POINT_CHECKS,
     SAMPLES,
     STRAND_CHECKS,
@@ -32,9 +32,7 @@ from onpath.models.paths.projection import basis
 from onpath.models.paths.spline_curves import SplineCurve
 
 Indices = NDArray[np.intp]
-FINER = 2  # times `Curve.grid`: points of a drawing that are checked
-ROUNDING = 1.02  # of bends as sharp as they may be
-BATCH = 256  # pairs of segments that are checked in one call
+BATCH = 256  # points of a drawing, or pairs of segments, that are checked in one call
 REASONS: Mapping[str, Message] = MappingProxyType(
     {
         "not_numbers": Message("fault.not_numbers"),
@@ -86,15 +84,11 @@ def curve_faults(reach: Callable[[Array], Array], curve: Curve) -> list[Fault]:
 
 def _spline_faults(reach: Callable[[Array], Array], curve: SplineCurve) -> list[Fault]:
     theta = curve.sample(FINER * curve.grid)
-    z, first = curve.at(theta), curve.at(theta, 1)
-    margin, speed = reach(z), np.linalg.norm(first[:, :2], axis=1)
-    bad = {
-        "outside": ~(margin > 0),
-        "singular": (margin > 0) & (margin < LEAST_MARGIN),
-        "bends_sharply": curve.draws(theta)
-        & (np.abs(curve.curvature(theta)) * LEAST_RADIUS > ROUNDING),
-        "cusp": speed < LEAST_SPEED,
-    }
+    z, first, second, _ = curve.all_orders(theta)
+    given = np.hstack([first, second, reach(z)[:, None]])
+    found = _in_batches(_drawing_checks(curve.dimension), given)
+    bad = dict(zip(DRAWING_CHECKS, found.T > 0, strict=True))
+    bad["bends_sharply"] &= curve.draws(theta)
     return [Fault(check, z[at]) for check, at in bad.items() if at.any()]
 
 
@@ -180,13 +174,18 @@ def strand_faults(z: Array, closed: bool) -> list[Fault]:
 
 def _checked(pairs: Array) -> tuple[NDArray[np.bool_], NDArray[np.bool_], Array]:
     """Which pairs of segments, (k, 4 d + 1), are too close, and which cross, and where."""
-    count, d = len(pairs), pairs.shape[1] // 4
-    found = np.zeros((count, 2 + d))
-    for begin in range(0, count, BATCH):
-        part = pairs[begin : begin + BATCH]
-        padded = np.vstack([part, np.zeros((BATCH - len(part), part.shape[1]))])
-        found[begin : begin + BATCH] = evaluated(_strand_checks(d), padded)[0][: len(part)]
+    found = _in_batches(_strand_checks(pairs.shape[1] // 4), pairs)
     return found[:, 0] > 0, found[:, 1] > 0, found[:, 2:]
+
+
+def _in_batches(function: ca.Function, rows: Array) -> Array:
+    """The results of a function of `BATCH` columns for any number of them, as rows."""
+    found = np.zeros((len(rows), function.size1_out(0)))
+    for begin in range(0, len(rows), BATCH):
+        part = rows[begin : begin + BATCH]
+        padded = np.vstack([part, np.zeros((BATCH - len(part), part.shape[1]))])
+        found[begin : begin + BATCH] = evaluated(function, padded)[0][: len(part)]
+    return found
 
 
 @lru_cache(maxsize=4)
@@ -204,6 +203,15 @@ def _point_checks(d: int) -> ca.Function:
     at = PathPoint(derivatives[:d], derivatives[d:], margin)
     bad = ca.vertcat(*(check(at) for check in POINT_CHECKS.values()))
     return ca.Function("points", [derivatives, margin], [ca.densify(bad)]).map(SAMPLES)
+
+
+@lru_cache(maxsize=2)
+def _drawing_checks(d: int) -> ca.Function:
+    """σ', σ'' and margin of `BATCH` points, as columns -> 1 or 0 for the `DRAWING_CHECKS`."""
+    given = ca.SX.sym("given", 2 * d + 1)
+    at = PathPoint(given[:d], given[d : 2 * d], given[2 * d])
+    bad = ca.vertcat(*(check(at) for check in DRAWING_CHECKS.values()))
+    return ca.Function("points", [given], [ca.densify(bad)]).map(BATCH)
 
 
 @lru_cache(maxsize=2)

@@ -35,11 +35,13 @@ import numpy as np
 
 TUBE = 0.008  # [m], radius of the tube in which the closest point must be unique
 LEAST_RADIUS = 5e-4  # [m], of the bends of a drawing
+ROUNDING = 1.02  # of bends as sharp as they may be
 STRANDS_APART = np.pi * TUBE  # [m], arc length from which two points are in different strands
 LEAST_MARGIN = 0.2  # smallest admissible value of Robot.margin, which is 1 at home
 LEAST_SPEED = 1e-4  # [m/rad]; slower, a curve has a cusp
 PARALLEL = 1e-18  # [m²]
-SAMPLES = 240  # points of the curve that are checked
+SAMPLES = 240  # points of a series that are checked
+FINER = 2  # times `Curve.grid`: points of a drawing that are checked
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,11 +70,12 @@ def singular(at: PathPoint) -> ca.SX:
 
 def bends(at: PathPoint) -> ca.SX:
     """|κ| = |σ' × σ''| / |σ'|³ > 1 / TUBE."""
-    if at.first.numel() == 2:
-        turn = ca.fabs(_cross(at.first, at.second))
-    else:
-        turn = _length(ca.cross(at.first, at.second))
-    return turn > _length(at.first) ** 3 / TUBE
+    return _turn(at) > _length(at.first) ** 3 / TUBE
+
+
+def bends_sharply(at: PathPoint) -> ca.SX:
+    """|κ| = |σ' × σ''| / |σ'|³ > 1 / LEAST_RADIUS, but for a rounding."""
+    return _turn(at) * LEAST_RADIUS > ROUNDING * _length(at.first) ** 3
 
 
 def cusp(at: PathPoint) -> ca.SX:
@@ -114,6 +117,14 @@ class StrandPair:
         return self.a + self.shares()[0] * self.d
 
 
+def meets(pair: StrandPair) -> ca.SX:
+    """Two segments that cross in the plan view."""
+    hit = ca.fabs(_cross(pair.d, pair.e)) >= PARALLEL
+    for share in pair.shares():
+        hit = ca.logic_and(hit, ca.logic_and(share >= 0, share < 1))
+    return hit
+
+
 def narrow(pair: StrandPair) -> ca.SX:
     """Two strands closer to each other than 2 TUBE."""
     between = pair.b - pair.a
@@ -122,9 +133,7 @@ def narrow(pair: StrandPair) -> ca.SX:
 
 def crosses(pair: StrandPair) -> ca.SX:
     """Two strands that cross; in space, that cross in the plan view and are near each other."""
-    hit = ca.logic_and(ca.fabs(_cross(pair.d, pair.e)) >= PARALLEL, pair.strands)
-    for share in pair.shares():
-        hit = ca.logic_and(hit, ca.logic_and(share >= 0, share < 1))
+    hit = ca.logic_and(meets(pair), pair.strands)
     if pair.a.numel() == 3:
         hit = ca.logic_and(hit, _length(pair.b - pair.a) <= _length(pair.d) + _length(pair.e))
     return hit
@@ -133,19 +142,29 @@ def crosses(pair: StrandPair) -> ca.SX:
 POINT_CHECKS: Mapping[str, Callable[[PathPoint], ca.SX]] = MappingProxyType(
     {"outside": outside, "singular": singular, "bends": bends, "cusp": cusp}
 )
+DRAWING_CHECKS: Mapping[str, Callable[[PathPoint], ca.SX]] = MappingProxyType(
+    {"outside": outside, "singular": singular, "bends_sharply": bends_sharply, "cusp": cusp}
+)
+"""Those of a drawing, whose bends count only where the pen is down."""
 STRAND_CHECKS: Mapping[str, Callable[[StrandPair], ca.SX]] = MappingProxyType(
     {"narrow": narrow, "crosses": crosses}
 )
-"""1 where a check fails, else 0: the former find faults, the latter ambiguities. Strands that cross
+"""1 where a check fails, else 0: the others find faults, these ambiguities. Strands that cross
 need not be reported as narrow as well."""
 
 
-def sampled_theta(number: ca.SX, closed: bool) -> ca.SX:
-    """θ of one of the `SAMPLES` evenly spaced points, [rad]; on a closed curve the last is the
-    first."""
+def sampled_theta(number: ca.SX, closed: bool, count: ca.SX | int = SAMPLES) -> ca.SX:
+    """θ of one of some evenly spaced points, [rad]; on a closed curve the last is the first."""
     if closed:
-        return ca.if_else(number < SAMPLES, number, 0) * (2 * np.pi / SAMPLES) - np.pi
-    return ca.fmin(number * (2 * np.pi / (SAMPLES - 1)) - np.pi, np.pi)
+        return ca.if_else(number < count, number, 0) * (2 * np.pi / count) - np.pi
+    return ca.fmin(number * (2 * np.pi / (count - 1)) - np.pi, np.pi)
+
+
+def _turn(at: PathPoint) -> ca.SX:
+    """|σ' × σ''|."""
+    if at.first.numel() == 2:
+        return ca.fabs(_cross(at.first, at.second))
+    return _length(ca.cross(at.first, at.second))
 
 
 def _length(vector: ca.SX) -> ca.SX:

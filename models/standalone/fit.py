@@ -162,12 +162,6 @@ def table_function(closed: bool) -> ca.Function:
     return ca.Function("table", [state], [ca.densify(ca.vertcat(*orders))])
 
 
-def mix_function(size: int) -> ca.Function:
-    """(before, after, share of the latter) -> the blend of two tables, see `curve_blend.blend`."""
-    before, after, share = ca.SX.sym("before", size), ca.SX.sym("after", size), ca.SX.sym("share")
-    return ca.Function("mix", [before, after, share], [(1 - share) * before + share * after])
-
-
 def _on(pieces: ca.SX, knot: ca.SX) -> ca.SX:
     """The point of a spline at a knot in the first of two pieces, or in the second, (2, 1)."""
     piece = ca.if_else(knot < pieces[0, 1], pieces[:, 0], pieces[:, 1])

@@ -8,19 +8,18 @@ from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.page_functions import lift_of
 from onpath.models.control.laws.registry import law_named
-from onpath.models.paths.projection import basis
 from onpath.models.systems.robots import Robot
 
 
 def begin_function(robot: Robot, kind: Kind, kernel: Kernel) -> ca.Function:
-    """(table, first state on another path) -> the first state at θ = 0 of this path, at rest."""
-    table, (symbol, state) = ca.SX.sym("table", *kind.table_shape), kernel.state.symbols("state")
-    start = table[:2, :] @ basis(ca.SX(0), kind.closed)
-    q = robot.inverse(lift_of(robot, kind)(start, False))
+    """(values at θ = 0, first state on another path) -> the first state there, at rest; the values
+    are those of the scan "curve"."""
+    values, (symbol, state) = ca.SX.sym("values", kind.value_rows), kernel.state.symbols("state")
+    q = robot.inverse(lift_of(robot, kind)(values[: kind.dimension], False))
     theta = {"theta": ca.SX(0), "theta_ref": ca.SX(0)}
     seen = {"encoder": q[: robot.system.joints], "estimate": q}
     state = dict(state) | {"q": q} | seen | theta
-    return ca.Function("begin", [table, symbol], [ca.densify(kernel.state.join(state))])
+    return ca.Function("begin", [values, symbol], [ca.densify(kernel.state.join(state))])
 
 
 def change_function(before: Kernel, after: Kernel, law: str) -> ca.Function:

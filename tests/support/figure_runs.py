@@ -18,6 +18,7 @@ from onpath.models.arrays import Array
 from onpath.models.closed_loop.loops import InterpretedLoop
 from onpath.models.closed_loop.page_functions import view_of
 from onpath.models.closed_loop.simulation import FREE, brake_at, raised, settings_vector
+from onpath.models.control.laws.registry import law_named
 from onpath.models.control.settable import changed
 from onpath.models.errors import CodedError
 from onpath.models.paths.curves import Curve
@@ -89,6 +90,12 @@ class PythonSide:
     def distance(self) -> float:
         """From the end-point of the last row to the path, by global search, [m]."""
         return float(path_distance(self.robot.frame, self.curve, self.y[None])[0])
+
+    def gap(self) -> float:
+        """From the end-point of the last row to the point of the path that its law knows, [m]."""
+        aim = law_named(self.law).aim
+        theta = self.kernel.log.unpack(self.row)[aim]
+        return float(np.linalg.norm(self.robot.frame.lift(self.curve.at(theta)) - self.y))
 
 
 class PythonFigure:

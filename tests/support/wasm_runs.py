@@ -8,7 +8,7 @@ import numpy as np
 
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.kernel import Kernel
-from onpath.models.closed_loop.wasm_loop import wasm_of
+from onpath.models.closed_loop.wasm_loop import Scan, wasm_of
 from tests.support.checkout import ROOT
 from tests.support.node_page import NodePage
 
@@ -39,13 +39,25 @@ def rows_in_node(
     page: NodePage, kernel: Kernel, state: Array, settings: Array, table: Array, ticks: int
 ) -> Array:
     """The log rows of `Loop.run`."""
-    vectors = [_text(vector.tobytes()) for vector in (state, settings, table)]
-    module = _text(wasm_of({}, {"loop": kernel}))
+    vectors = state, settings, table
+    return _rows(page, wasm_of({}, {"loop": kernel}), vectors, kernel.log.size, ticks)
+
+
+def scanned_in_node(
+    page: NodePage, scan: Scan, state: Array, constants: Array, table: Array, steps: int
+) -> Array:
+    """The rows of results of a scan."""
+    module, size = wasm_of({}, {}, {"loop": scan}), scan.step.numel_out(1)
+    return _rows(page, module, (state, constants, table), size, steps)
+
+
+def _rows(
+    page: NodePage, module: bytes, given: tuple[Array, Array, Array], size: int, count: int
+) -> Array:
+    vectors = [_text(vector.tobytes()) for vector in given]
     own = _MATHEMATICS.read_text("utf-8").replace(": number", "").replace("export ", "")
-    rows = page.evaluate(
-        _RUN.replace("MATHEMATICS", own), [module, vectors, kernel.log.size, ticks]
-    )
-    return np.frombuffer(b64decode(rows)).reshape(ticks, -1)
+    rows = page.evaluate(_RUN.replace("MATHEMATICS", own), [_text(module), vectors, size, count])
+    return np.frombuffer(b64decode(rows)).reshape(count, -1)
 
 
 def _text(data: bytes) -> str:

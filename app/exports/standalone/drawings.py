@@ -29,7 +29,6 @@ from onpath.models.closed_loop.page_functions import lift_of, page_functions, pl
 from onpath.models.closed_loop.simulation import raised
 from onpath.models.control.effective_mass import mobility_of
 from onpath.models.paths.curves import Curve
-from onpath.models.paths.projection import LocalCurve, basis
 from onpath.models.systems.robots import Robot
 
 SWITCHES = ("labels", "tube", "grid", "rank", "errors", "mass")
@@ -41,7 +40,7 @@ def drawing_functions(figure: FigureChoice, kind: Kind) -> dict[str, ca.Function
 
     labels: q -> places of the names, then both ends of all lines, (2, k + 2 m)
     ellipse: q -> points of the ellipse of the effective mass, (2, SIDES + 1)
-    beside: (table, θ, ξ) -> the point at a distance ξ to the left of the path, (2, 1)
+    beside: (values, ξ) -> the point at a distance ξ to the left of the path, (2, 1)
     enlarged: (q, factor) -> `picture` of `page_functions` with a larger deflection
     """
     robot, drawn = figure.machine, {*figure.drawings}
@@ -55,16 +54,12 @@ def drawing_functions(figure: FigureChoice, kind: Kind) -> dict[str, ca.Function
     if "mass" in drawn:
         functions["ellipse"] = _ellipse(figure, kind)
     if drawn & {"tube", "grid"}:
-        table, theta, xi = (
-            ca.SX.sym("table", *kind.table_shape),
-            ca.SX.sym("theta"),
-            ca.SX.sym("xi"),
-        )
-        local = LocalCurve.from_values(theta, kind.closed, table @ basis(theta, kind.closed))
-        along = local.first / ca.norm_2(local.first)
-        point = local.sigma + xi * ca.vertcat(-along[1], along[0])
+        values, xi = ca.SX.sym("values", kind.value_rows), ca.SX.sym("xi")
+        sigma, first, *_ = ca.vertsplit(values, kind.dimension)
+        along = first / ca.norm_2(first)
+        point = sigma + xi * ca.vertcat(-along[1], along[0])
         there = placed(robot, lift_of(robot, kind)(point, False), seen) + offset
-        functions["beside"] = ca.Function("beside", [table, theta, xi], [ca.densify(there)])
+        functions["beside"] = ca.Function("beside", [values, xi], [ca.densify(there)])
     if "larger" in drawn:
         factor = ca.SX.sym("factor")
         larger = [ca.densify(seen @ points) for points in robot.skeleton(q, factor)]

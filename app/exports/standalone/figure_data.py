@@ -35,22 +35,23 @@ from onpath.lessons.words import Words
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.page_functions import (
-    GRID,
     front_of,
-    grid_of,
     page_functions,
     stop_reasons,
 )
 from onpath.models.closed_loop.simulation import raised
+from onpath.models.control.bend_limit import PER_PIECE
 from onpath.models.control.laws.own import short_name
 from onpath.models.control.laws.registry import law_named
 from onpath.models.control.settable import specs, value_of
 from onpath.models.control.sides import RIGHT, SIDES
 from onpath.models.paths.curve_faults import ambiguities
 from onpath.models.paths.curves import TERMS, Curve
-from onpath.models.paths.path_checks import POINT_CHECKS, SAMPLES
+from onpath.models.paths.path_checks import DRAWING_CHECKS, FINER, POINT_CHECKS, SAMPLES
+from onpath.models.paths.spline_curves import SplineCurve
 from onpath.models.robot_files.xml_elements import shown
-from onpath.models.standalone.edit import OUTLINE, ROW
+from onpath.models.standalone.curve_scans import GRID, REFINEMENTS
+from onpath.models.standalone.edit import ROW
 from onpath.models.standalone.fit import FINE, PIECE
 from onpath.models.systems.efforts import efforts
 from onpath.models.systems.law_parameters import LEVEL_SET
@@ -134,6 +135,8 @@ def common_data(figure: FigureChoice, words: Words, numbers: Mapping[str, Any]) 
     }
 
 
+OUTLINE = 241
+"""Points of the outline of a series."""
 POSES = 13
 """Places on a path, from -π to π, at which the critical α is looked for; it varies slowly."""
 PLOTTED = ("speed", "theta_rate", "xi", "xi_rate", "u", "force")
@@ -144,16 +147,16 @@ _EDIT = {
     "fine": FINE,
     "sums": 3 + 2 * TERMS,
     "row": ROW,
-    "checks": tuple(POINT_CHECKS),
-    "samples": SAMPLES,
-    "outline": OUTLINE,
     "grid": GRID,
+    "refinements": REFINEMENTS,
+    "turns": PER_PIECE,
+    "grain": 1e-6,
     "halvings": HALVINGS,
     "blend": BLEND,
     "nudge": NUDGE,
 }
-"""Sizes of vectors in models/standalone; and as in the lab, the halvings of a refused move, the
-duration of a blend, [s], and the step of a key, [m]."""
+"""Sizes of vectors and numbers of steps in models/standalone; and as in the lab, the halvings of a
+refused move, the duration of a blend, [s], and the step of a key, [m]."""
 _SET = (
     *("hold_active", "hold_anchor", "hold_tangent", "hold_normal"),
     *("hand_active", "hand_target"),
@@ -262,23 +265,34 @@ def stop_texts(
 
 
 def _path(figure: FigureChoice, name: str, curve: Curve) -> dict[str, Any]:
-    robot, path = figure.machine, raised(curve, figure.parameters)
-    design = design_of(name, curve)
-    theta = np.linspace(-np.pi, np.pi, OUTLINE)
-    place = page_functions(robot, figure.kind(figure.laws[0], curve))["place"]
-    outline = place(robot.frame.lift(path.at(theta)).T).full()
+    path, design = raised(curve, figure.parameters), design_of(name, curve)
+    kernel = figure.kernel(figure.laws[0], curve)
+    drawn = path if isinstance(path, SplineCurve) else None
     return {
         "kind": kind_name(figure, curve),
         "closed": curve.closed,
+        "dimension": path.dimension,
         "doubts": [each.reason.code for each in ambiguities(path)],
-        "table": path.table().tolist(),
-        "grid": grid_of(robot, path.at(path.sample(GRID))).ravel().tolist(),
-        "outline": _rounded(outline.T),
+        "pieces": drawn.pieces if drawn else 0,
+        "raised": drawn.raised if drawn else (),
+        "table": (drawn.points.ravel() if drawn else path.table()).tolist(),
+        "checks": tuple(DRAWING_CHECKS if drawn else POINT_CHECKS),
+        "samples": FINER * path.grid if drawn else SAMPLES,
+        "turning": kernel.settings.slices["turning"].start if drawn else None,
+        "outline": [] if drawn else _outline(figure, curve, path),
         "states": [figure.start(law, curve).tolist() for law in figure.every_law],
         "settings": figure.settings(figure.planned, curve).tolist(),
         "points": design.points.tolist() if figure.edits else [],
+        "handles": [],
         "fit": fit_name(design),
     }
+
+
+def _outline(figure: FigureChoice, curve: Curve, path: Curve) -> list[float]:
+    """Points of a series in the picture, from which also a page without loops tells a circle."""
+    robot, theta = figure.machine, np.linspace(-np.pi, np.pi, OUTLINE)
+    place = page_functions(robot, figure.kind(figure.laws[0], curve))["place"]
+    return _rounded(place(robot.frame.lift(path.at(theta)).T).full().T)
 
 
 def changes_data(figure: FigureChoice, places: SettingPlaces) -> dict[str, Any]:

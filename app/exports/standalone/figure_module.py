@@ -17,6 +17,8 @@ from onpath.models.closed_loop.wasm_loop import Scan, wasm_of
 from onpath.models.paths.curve_fit import control_points
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.path_design import PathDesign, presets
+from onpath.models.paths.spline_curves import SplineCurve
+from onpath.models.standalone.curve_scans import beyond_function, curve_scans
 from onpath.models.standalone.edit import edit_functions, edit_scans
 from onpath.models.standalone.fit import (
     arc_scan,
@@ -57,7 +59,10 @@ def figure_module(figure: FigureChoice) -> bytes:
         shown = {**page_functions(figure.machine, kind), **_changes(figure, kernels)}
         shown |= measurements(figure.machine, figure.parameters)
         shown |= drawing_functions(figure, kind)
+        if not kind.closed and not kind.spline:
+            shown["beyond"] = beyond_function(figure.machine, kind)
         edited, steps = _editing(figure, kind, kernels)
+        steps |= curve_scans(figure.machine, kind)
         loops |= {f"{each}.{name}": kernel for each, kernel in loops_of(figure, curve).items()}
         functions |= {f"{each}.{name}": function for each, function in (shown | edited).items()}
         scans |= {f"{each}.{name}": scan for each, scan in steps.items()}
@@ -79,10 +84,13 @@ def _editing(figure: FigureChoice, kind: Kind, kernels: Sequence[Kernel]) -> Par
     robot = figure.machine
     if not figure.edits:
         return {}, {}
-    functions = edit_functions(robot, kind) | {"table": table_function(kind.closed)}
+    functions, scans = edit_functions(robot, kind), edit_scans(robot, kind)
     for i, kernel in enumerate(kernels):
         functions[f"begin{i}"] = begin_function(robot, kind, kernel)
-    return functions, edit_scans(robot, kind) | {"resample": resample_scan(kind.closed)}
+    if not kind.spline:
+        functions["table"] = table_function(kind.closed)
+        scans["resample"] = resample_scan(kind.closed)
+    return functions, scans
 
 
 def _shared(figure: FigureChoice) -> Parts:
@@ -90,7 +98,8 @@ def _shared(figure: FigureChoice) -> Parts:
     functions, scans, paths = dict[str, ca.Function](), dict[str, Scan](), figure.paths
     if figure.edits:
         scans["arc"] = arc_scan()
-        for design in (design_of(name, curve) for name, curve in paths.items()):
+        series = {n: curve for n, curve in paths.items() if not isinstance(curve, SplineCurve)}
+        for design in (design_of(name, curve) for name, curve in series.items()):
             count = len(design.points)
             functions[f"spline.{fit_name(design)}"] = spline_function(design.curve.closed, count)
     return functions, scans

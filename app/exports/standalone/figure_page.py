@@ -13,6 +13,7 @@ from onpath.app.exports.standalone.figure_data import figure_data
 from onpath.app.exports.standalone.page_style import page_style
 from onpath.lessons.sides import law_label
 from onpath.lessons.words import Words
+from onpath.models.paths.spline_curves import SplineCurve
 from onpath.models.systems.guessed_numbers import guess_sentences
 
 POLICY = (
@@ -99,6 +100,8 @@ def _hint(figure: FigureChoice, words: Words, without: Sequence[str]) -> str:
         hints.append(words("standalone.hint_hold", robots=robots))
     elif "pull" in figure.controls:
         hints.append(words("standalone.hint_pull"))
+    if any(isinstance(each, SplineCurve) and each.raised for each in figure.paths.values()):
+        hints.append(words("standalone.hint_raised"))
     if without:
         parts = ", ".join(words(f"standalone.recorded_{part}") for part in without)
         hints.append(words("standalone.recorded", parts=parts))

@@ -13,7 +13,7 @@ from onpath.models.control.laws.own import is_text
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.control.sides import SIDES
 from onpath.models.paths.curve_fit import SHORTEST
-from onpath.models.paths.path_checks import TUBE
+from onpath.models.paths.path_checks import LEAST_RADIUS, TUBE
 
 PLAIN = (
     *CHART,
@@ -67,6 +67,8 @@ def figure_words(words: Words) -> dict[str, str]:
     messages |= words.unfilled(_FILLED)
     widths = {"radius": f"{TUBE * 1e3:.0f}", "least": f"{2 * TUBE * 1e3:.0f}"}
     messages |= {key: words(key, **widths) for key in _FAULTS}
+    sharpest = f"{LEAST_RADIUS * 1e3:g}"
+    messages["fault.bends_sharply"] = words("fault.bends", radius=sharpest)
     shortest = f"{1e3 * SHORTEST:.0f}"
     messages["error.path_too_short"] = words(
         "error.path_too_short", length="{length}", least=shortest

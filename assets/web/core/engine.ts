@@ -57,6 +57,9 @@ export interface RowData {
 /** The path, as lines through its points. */
 export interface PathShape {
     lines: readonly (readonly Vector[])[]
+    /** Of a drawing of several strokes: the strokes, and the links between them, along which the pen is up. */
+    strokes?: readonly (readonly Vector[])[]
+    links?: readonly (readonly Vector[])[]
     closed: boolean
     /** Two directions at right angles and of length 1, in which the path is seen from in front. */
     right: Vector

@@ -31,11 +31,23 @@ export interface LawData extends Texts<"title" | "text"> {
 
 export interface PathData extends Texts<"label" | "kind" | "fit"> {
     closed: boolean
+    dimension: number
     doubts: string[]
     points: Point[]
+    /** Of a drawing; 0 for a series. */
+    pieces: number
+    /** From which θ to which the pen is up. */
+    raised: [number, number][]
+    /** What moves with a control point of a drawing: θ of it, and a weight for each point of the table. */
+    handles: { theta: number; weights: number[] }[]
     table: number[]
-    grid: number[]
+    /** Of a series, in the picture. */
     outline: number[]
+    /** What a row of the checks is about, and how many rows there are. */
+    checks: string[]
+    samples: number
+    /** The place of the largest turning in the settings of a drawing. */
+    turning: number | null
     states: number[][]
     settings: number[]
 }
@@ -109,6 +121,5 @@ export interface FigureData extends Texts<"language" | "module"> {
     /** For each path the least α on it from which on the zero dynamics are unstable, and what is said below and beyond. */
     critical: { limit: number; notes: [string, string] }[]
     poles: PoleNumbers
-    edit: Numbers<"piece" | "fine" | "sums" | "row" | "samples" | "outline" | "grid"> &
-        Numbers<"halvings" | "blend" | "nudge"> & { checks: string[] }
+    edit: Numbers<"piece" | "fine" | "sums" | "row" | "grid" | "refinements" | "turns" | "grain" | "halvings" | "blend" | "nudge">
 }

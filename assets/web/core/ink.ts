@@ -10,6 +10,7 @@ const NAMES = [
 export type Tone = (typeof NAMES)[number]
 type Tones = Record<Tone, string>
 
+const LIGHTER = 0.6 // opacity of a link between strokes
 const redraws = new WeakMap<HTMLCanvasElement, () => void>() // what draws a canvas anew
 let kept: Tones | null = null
 
@@ -81,6 +82,16 @@ export function stroke(ink: CanvasRenderingContext2D, points: readonly Pixel[], 
     ink.beginPath()
     for (const [x, y] of points) ink.lineTo(x, y)
     ink.stroke()
+}
+
+/** A link between strokes of a drawing, along which the pen is up. */
+export function dashed(ink: CanvasRenderingContext2D, points: readonly Pixel[], colour: string, width: number): void {
+    const { globalAlpha } = ink
+    ink.globalAlpha = LIGHTER * globalAlpha
+    ink.setLineDash([2 * width, 3 * width])
+    stroke(ink, points, colour, width)
+    ink.setLineDash([])
+    ink.globalAlpha = globalAlpha
 }
 
 export function disc(ink: CanvasRenderingContext2D, [x, y]: Pixel, radius: number, colour: string): void {

@@ -3,7 +3,7 @@
 import { made, tell } from "../core/dom"
 import { shown, type Engine, type PathShape, type SideSample, type Vector } from "../core/engine"
 import type { Point } from "../core/figure_data"
-import { arrow, covers, disc, letters, Sheet, stroke, tones, type Box, type Pixel } from "../core/ink"
+import { arrow, covers, dashed, disc, letters, Sheet, stroke, tones, type Box, type Pixel } from "../core/ink"
 import { niceStep } from "../core/numbers"
 import { drawShapes, shapesOf } from "../core/symbols"
 import { phrase, significant, written, type Texts } from "../core/words"
@@ -142,7 +142,8 @@ export class Lens {
         const all = tones(), tone = faces[side]!.side
         const [colour, dark] = [all[`side${tone}`], all[`dark${tone}`]]
         const [tip, closest] = [pixel(sample.tip), pixel(sample.closest)]
-        for (const line of path.lines) stroke(ink, line.map(pixel), all.path, 3)
+        for (const line of path.strokes ?? path.lines) stroke(ink, line.map(pixel), all.path, 3)
+        for (const link of path.links ?? []) dashed(ink, link.map(pixel), all.path, 3)
         const time = shown(engine).time
         const trace = engine.since(time - TRACE).filter(each => each.time <= time).map(each => pixel(each.sides[side]!.tip))
         ink.globalAlpha = 0.35

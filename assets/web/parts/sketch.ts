@@ -1,7 +1,7 @@
 // The robots as lines, while there is no picture of them.
 
 import { shown, type Vector } from "../core/engine"
-import { disc, Sheet, stroke, tones, type Pixel } from "../core/ink"
+import { dashed, disc, Sheet, stroke, tones, type Pixel } from "../core/ink"
 import { projected } from "../core/placing"
 import type { RemoteEngine } from "../channel/channel"
 
@@ -30,7 +30,9 @@ export class Sketch {
                 const [x, y] = projected(camera, point)
                 return [sheet.width / 2 + x * sheet.height, sheet.height / 2 + y * sheet.height]
             }
-            for (const line of engine.path.lines) stroke(ink, line.map(pixel), colours.path, 2.5)
+            const { path } = engine
+            for (const line of path.strokes ?? path.lines) stroke(ink, line.map(pixel), colours.path, 2.5)
+            for (const link of path.links ?? []) dashed(ink, link.map(pixel), colours.path, 2.5)
             const ends = engine.lit("bars", i).map(pixel)
             for (let k = 0; k + 1 < ends.length; k += 2) stroke(ink, [ends[k]!, ends[k + 1]!], colours[`side${i as 0 | 1}`], 8)
             for (const end of ends) disc(ink, end, 5, colours.steel)

@@ -1,7 +1,7 @@
 // The picture of one robot, in two dimensions.
 
 import type { FigureData, Point } from "../core/figure_data"
-import { arrow, disc, Sheet, stroke, tones } from "../core/ink"
+import { arrow, dashed, disc, Sheet, stroke, tones } from "../core/ink"
 import { drawShapes, jointsOfFiveBar, shapesOf, type Seen } from "../core/symbols"
 import { Drawings } from "./drawings"
 import type { Path } from "../simulation/path"
@@ -54,7 +54,7 @@ export class View {
         const { side, clock, pixel, scale, drawings } = this, scene = { side, clock, path, number, pixel, scale }
         drawings.beneath(ink, scene)
         const { controls } = this.data, colours = tones()
-        this.line(ink, points(path.outline), colours.path, 2.5)
+        for (const part of path.parts) (part.raised ? dashed : stroke)(ink, part.points.map(pixel), colours.path, 2.5)
         const spots = controls.includes("drag") ? path.spots() : []
         if (selected !== null) this.disc(ink, spots[selected]!, 9, colours.selected)
         for (const spot of spots) {

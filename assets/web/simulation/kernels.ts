@@ -6,7 +6,7 @@ import { mathematics } from "./mathematics"
 type Exported = (...places: number[]) => void
 
 const DOUBLE = 8 // bytes
-const PAGES = 64 // of 64 KiB
+const PAGES = 128 // of 64 KiB
 
 /** A vector is given by the index of its first double in `numbers`. */
 export class Kernels {

@@ -38,7 +38,7 @@ export class LocalEngine implements Engine {
     get path(): PathShape {
         const { followed, data } = this.simulation
         const [right, up] = data.front
-        return (this.shape ??= { lines: [followed.line()], closed: followed.data.closed, right, up })
+        return (this.shape ??= { ...followed.shape(), closed: followed.data.closed, right, up })
     }
 
     get texts(): SideText[] {

@@ -1,12 +1,15 @@
 // A path, and its control points while readers drag them: an edit goes as far as possible, and shows
 // where the path would be refused, as in app/lab/path_editor.py.
 
-import type { Vector } from "../core/engine"
+import type { PathShape, Vector } from "../core/engine"
 import type { FigureData, PathData, Point } from "../core/figure_data"
 import type { Kernels } from "./kernels"
 
-const LINE = 600 // pieces of a line through points of the path
+const [LINE, OUTLINE] = [600, 240] // pieces of a line through points of a series, and of its outline
 const ARC = 3 // numbers of a row of arc length
+const ORDERS = 4 // the curve and its derivatives
+const MOST_VALUES = 12 // of a curve in space
+const WORK = 16 // numbers of work that functions share
 
 /** Why a curve cannot be followed: keys of messages, and places in the picture; and its length if
  * it is too short, [mm]. Without places, there is no such curve. */
@@ -16,48 +19,126 @@ export interface Fault {
     length?: number
 }
 
+/** Points of a stroke of a drawing, or of a link between two, along which the pen is up. */
+interface Part<Of> {
+    points: Of[]
+    raised: boolean
+}
+
 export class Path {
     private readonly edit = this.figure.edit
     private readonly flat = this.data.points.flat()
-    /** The curve that is followed, points on it, and its outline. */
+    private readonly pieces = this.kernels.put([this.data.pieces])
+    private readonly intervals = this.data.pieces ? this.data.samples : OUTLINE
+    /** The curve that is followed. */
     readonly table = this.kernels.put(this.data.table)
-    readonly grid = this.kernels.put(this.data.grid)
-    outline = this.data.outline
+    outline: number[] = []
     edited = false
     /** Why the last edit went no further. */
     fault: Fault | null = null
     /** What is ambiguous about the path that is kept: keys of messages. */
     doubts = this.data.doubts
     private progress = 1
+    private known: { parts?: Part<Point>[]; turning?: number } = {}
     /** Control points and curve before an edit, as shown, and as tried. */
     private readonly kept = [this.kernels.put(this.flat), this.kernels.put(this.data.table)] as const
     private readonly shown = [this.kernels.put(this.flat), this.kernels.put(this.data.table)] as const
     private readonly tried = [this.kernels.put(this.flat), this.kernels.put(this.data.table)] as const
     private readonly before = this.kernels.put(this.data.table)
-    private readonly work = this.kernels.room(this.edit.piece * (this.flat.length + 4) + this.edit.sums)
-    private readonly rows = this.kernels.room(this.flat.length && ARC * this.edit.fine)
+    private readonly work = this.kernels.room(WORK + this.edit.piece * (this.flat.length + 4) + this.edit.sums)
+    private readonly values = this.kernels.room(MOST_VALUES)
+    private readonly state = this.kernels.room(ORDERS + this.figure.sizes.p)
+    /** Points of a series, from which the search for the closest one begins. */
+    private readonly grid = this.kernels.room(this.data.pieces ? 0 : this.edit.grid * this.figure.sizes.p)
+    private readonly rows = this.kernels.room(
+        Math.max(
+            this.flat.length && ARC * this.edit.fine, this.edit.row * (this.data.samples + 1),
+            ORDERS * this.data.dimension * (Math.max(this.intervals, LINE) + 1),
+        ),
+    )
 
-    constructor(readonly data: PathData, private readonly figure: FigureData, private readonly kernels: Kernels) {}
+    constructor(readonly data: PathData, private readonly figure: FigureData, private readonly kernels: Kernels) {
+        this.refresh()
+    }
 
     /** Places of the control points in the picture. */
     readonly spots = (): Point[] => this.data.points.map((_, i) => this.spot(this.shown[0] + 2 * i))
-    /** Points of the followed curve, in the space of the end-points. */
-    line(): Vector[] {
-        const { work, kernels, figure } = this
-        const end = work + 1
-        return Array.from({ length: LINE + 1 }, (_, i) => {
-            kernels.numbers[work] = (2 * i / LINE - 1) * Math.PI
-            this.call("at", this.table, work, end)
-            return [...kernels.numbers.subarray(end, end + figure.sizes.p)]
-        })
+    /** Lines of the followed curve, in the space of the end-points. */
+    shape(): Pick<PathShape, "lines" | "strokes" | "links"> {
+        const { kernels, work, data, figure: { sizes } } = this, count = Math.max(this.intervals, LINE)
+        const seen = (place: number): Vector => {
+            this.call("at", place, work)
+            return [...kernels.numbers.subarray(work, work + sizes.p)]
+        }
+        const lines = [this.along(-Math.PI, Math.PI, count, seen)]
+        if (!data.raised.length) return { lines }
+        const parts = [...this.split(count, seen)]
+        const of = (raised: boolean) => parts.filter(each => each.raised === raised).map(each => each.points)
+        return { lines, strokes: of(false), links: of(true) }
+    }
+
+    /** The strokes of the followed curve and the links between them, in the picture. */
+    get parts(): Part<Point>[] {
+        return (this.known.parts ??= [...this.split(this.intervals, place => this.seen(place))])
     }
 
     /** The point in the picture at a distance to the left of the followed curve, [m]. */
     beside(theta: number, across: number): Point {
-        const { work, kernels } = this
-        kernels.numbers.set([theta, across], work)
-        this.call("beside", this.table, work, work + 1, work + 2)
-        return kernels.pair(work + 2)
+        const { work, kernels } = this, values = this.valuesAt(theta)
+        kernels.numbers[work] = across
+        this.call("beside", values, work, work + 1)
+        return kernels.pair(work + 1)
+    }
+
+    /** The place of the curve and its derivatives at θ. */
+    valuesAt(theta: number): number {
+        this.kernels.numbers.set([0, theta, 0, theta], this.state)
+        this.scan("curve", this.state, this.table, this.values, 1)
+        return this.values
+    }
+
+    /** Put the point at θ, in the space of the end-points, somewhere. */
+    readonly at = (theta: number, into: number) => this.call("at", this.valuesAt(theta), into)
+    /** Put the distance of an end-point, and the closest point, somewhere: that on the strands of some θ, and of all of a series. */
+    nearest(y: number, strands: readonly number[], into: number): void {
+        const { kernels: { numbers }, state, work, data, figure: { sizes: { p } }, edit: { refinements, grid } } = this
+        const size = 1 + p
+        numbers[into] = Infinity
+        const take = (found: number) => {
+            if (numbers[found]! < numbers[into]!) numbers.copyWithin(into, found, found + size)
+        }
+        const improve = () => {
+            this.scan("nearest", state, this.table, this.rows, refinements + 1)
+            take(this.rows + refinements * size)
+        }
+        numbers.copyWithin(state + 1, y, y + p)
+        for (const theta of strands) {
+            numbers[state] = theta
+            improve()
+        }
+        if (data.pieces) return
+        numbers.set([0, Infinity], state + size)
+        this.loop("lowest", state, state, this.grid, grid)
+        improve()
+        if (data.closed) return
+        for (const end of [-1, 1]) {
+            const values = this.valuesAt(end * Math.PI)
+            numbers[work] = end
+            this.call("beyond", values, work, y, work + 1)
+            take(work + 1)
+        }
+    }
+
+    /** Whether the pen is down at θ. */
+    draws(theta: number): boolean {
+        const { closed, raised } = this.data
+        const inner = closed ? theta - 2 * Math.PI * Math.floor(theta / (2 * Math.PI) + 0.5) : theta
+        return !raised.some(([begin, end]) => begin < inner && inner < end)
+    }
+
+    /** The largest turn of the tangent for a radian of θ, along a drawing that has been edited. */
+    get turning(): number {
+        return (this.known.turning ??= this.mostTurning())
     }
 
     /** Move a point by a vector in the picture, from where it was before the edit. */
@@ -104,16 +185,12 @@ export class Path {
     /** Move the followed curve towards the shown one; returns whether it moves. */
     advance(seconds: number): boolean {
         if (this.progress >= 1) return false
-        const { work, kernels, table, edit, rows } = this
+        const { kernels: { numbers }, table, before, shown, edit } = this
         this.progress += seconds / edit.blend
-        kernels.numbers[work] = this.progress
-        if (this.progress < 1) this.call("mix", this.before, this.shown[1], work, table)
-        else kernels.copy(this.shown[1], table, this.data.table.length)
-        kernels.numbers[work] = 0
-        this.scan("grid", work, table, this.grid, edit.grid)
-        kernels.numbers[work] = 0
-        this.scan("outline", work, table, rows, edit.outline)
-        this.outline = [...kernels.numbers.subarray(rows, rows + this.outline.length)]
+        const share = this.progress
+        if (share >= 1) this.kernels.copy(shown[1], table, this.data.table.length)
+        else for (let i = 0; i < this.data.table.length; i++) numbers[table + i] = (1 - share) * numbers[before + i]! + share * numbers[shown[1] + i]!
+        this.refresh()
         return true
     }
 
@@ -125,16 +202,13 @@ export class Path {
             numbers.set(this.data.table, table)
         }
         numbers.set(this.data.table, this.table)
-        numbers.set(this.data.grid, this.grid)
-        Object.assign(this, { outline: this.data.outline, doubts: this.data.doubts, edited: false, fault: null, progress: 1 })
+        Object.assign(this, { doubts: this.data.doubts, edited: false, fault: null, progress: 1 })
+        this.refresh()
     }
 
     /** The length of the kept curve, [m]. */
     length(): number {
-        const { work, rows, edit, kernels } = this
-        kernels.numbers.fill(0, work, work + 4)
-        this.scan("check", work, this.kept[1], rows, edit.samples + 1)
-        return kernels.numbers[rows + edit.row * edit.samples + 2]!
+        return this.kernels.numbers[this.checked(this.kept[1]) + this.edit.row * this.data.samples + 2]!
     }
 
     /** Follow the shown curve at once. */
@@ -144,16 +218,71 @@ export class Path {
         this.advance(this.edit.blend)
     }
 
+    /** Compute what depends on the followed curve. */
+    private refresh(): void {
+        const { kernels, work, data, grid, figure: { sizes: { p } }, edit } = this
+        this.known = {}
+        this.outline = this.along(-Math.PI, Math.PI, this.intervals, place => this.seen(place)).flat()
+        if (data.pieces) return
+        let into = grid
+        this.along(-Math.PI, Math.PI * (data.closed ? 1 - 2 / edit.grid : 1), edit.grid - 1, place => {
+            this.call("at", place, work)
+            kernels.copy(work, into, p)
+            into += p
+        })
+    }
+
+    /** What a function gives for the curve and its derivatives at even steps, both ends included. */
+    private along<Of>(begin: number, end: number, intervals: number, of: (place: number) => Of): Of[] {
+        const { kernels, state, rows, data } = this
+        kernels.numbers.set([0, begin, (end - begin) / intervals, end], state)
+        this.scan("curve", state, this.table, rows, intervals + 1)
+        return Array.from({ length: intervals + 1 }, (_, i) => of(rows + i * ORDERS * data.dimension))
+    }
+
+    /** The parts of the curve, with as many intervals for all of it. */
+    private *split<Of>(intervals: number, of: (place: number) => Of): Iterable<Part<Of>> {
+        const edges = [-Math.PI, ...this.data.raised.flat(), Math.PI]
+        for (let i = 0; i + 1 < edges.length; i++) {
+            const [from, to] = [edges[i]!, edges[i + 1]!]
+            const count = Math.max(Math.ceil(((to - from) / (2 * Math.PI)) * intervals), 1)
+            if (to > from) yield { points: this.along(from, to, count, of), raised: i % 2 === 1 }
+        }
+    }
+
+    private mostTurning(): number {
+        const { state, kernels, data, edit } = this
+        kernels.numbers.set([0, 0], state)
+        this.scan("turning", state, this.table, this.work, edit.turns * data.pieces)
+        return kernels.numbers[state + 1]!
+    }
+
     /** Try a share of the move to a target. */
     private refusal(index: number, target: Point, share: number): Fault | null {
         const { kept, tried, work } = this
         this.take(kept, tried)
         this.kernels.numbers.set([...target, share], work)
         this.call("toward", kept[0] + 2 * index, work, work + 2, tried[0] + 2 * index)
-        return this.fit() ?? this.check()
+        return (this.data.pieces ? this.bend(index) : this.fit()) ?? this.check()
     }
 
-    /** Fit a curve to the tried points. */
+    /** Bend the tried drawing at a control point, as in models/paths/drawing_design.py. */
+    private bend(index: number): null {
+        const { kernels: { numbers }, kept, tried, state, values, edit: { grain }, data: { handles } } = this
+        const by = [0, 1].map(k => numbers[tried[0] + 2 * index + k]! - numbers[kept[0] + 2 * index + k]!)
+        handles[index]!.weights.forEach((weight, j) => by.forEach((each, k) => {
+            const place = 2 * j + k
+            numbers[tried[1] + place] = grain * Math.round((numbers[kept[1] + place]! + weight * each) / grain)
+        }))
+        handles.forEach(({ theta }, i) => {
+            numbers.set([0, theta, 0, theta], state)
+            this.scan("curve", state, tried[1], values, 1)
+            this.kernels.copy(values, tried[0] + 2 * i, 2)
+        })
+        return null
+    }
+
+    /** Fit a series to the tried points. */
     private fit(): Fault | null {
         const { kernels, work, edit, data } = this
         const { numbers } = kernels
@@ -162,16 +291,16 @@ export class Path {
         kernels.call(`spline.${data.fit}`, this.tried[0], work, arc, sums)
         const reason = [null, "standalone.coincide", "error.path_too_short"][numbers[sums]!]
         if (reason) return { reasons: [reason], marks: [], length: numbers[sums + 1]! }
-        this.along("arc", arc, arc)
+        this.alongPieces("arc", arc, arc)
         numbers.fill(0, sums, sums + edit.sums)
         numbers.set([0, numbers[arc + 1]!, numbers[arc + 4]!], sums)
-        this.along(`resample.${data.kind}`, sums, arc)
+        this.alongPieces(`resample.${data.kind}`, sums, arc)
         this.call("table", sums, this.tried[1])
         return null
     }
 
     /** A scan along the pieces of a spline, whose last one only ends the others. */
-    private along(name: string, state: number, end: number): void {
+    private alongPieces(name: string, state: number, end: number): void {
         const { work, edit, kernels } = this
         for (let place = work, row = this.rows; place < end - edit.piece; place += edit.piece) {
             const count = kernels.numbers[place + 1]!
@@ -182,14 +311,12 @@ export class Path {
 
     /** Whether a robot could follow the tried curve. */
     private check(): Fault | null {
-        const { work, rows, edit } = this
-        const { numbers } = this.kernels
-        const { row, samples } = edit
+        const { edit: { row }, data: { samples, checks }, kernels: { numbers } } = this
         const fault: Fault = { reasons: [], marks: [] }
-        numbers.fill(0, work, work + 4)
-        this.scan("check", work, this.tried[1], rows, samples + 1)
-        edit.checks.forEach((name, k) => {
-            const bad = Array.from({ length: samples }, (_, i) => rows + row * i).filter(each => numbers[each + 3 + k])
+        const rows = this.checked(this.tried[1])
+        checks.forEach((name, k) => {
+            const bad = Array.from({ length: samples }, (_, i) => rows + row * i)
+                .filter((each, i) => numbers[each + 3 + k] && (name !== "bends_sharply" || this.draws(this.sampled(i))))
             if (!bad.length) return
             fault.marks.push(...bad.map(place => this.spot(place)))
             fault.reasons.push(`fault.${name}`)
@@ -197,16 +324,26 @@ export class Path {
         return fault.reasons.length ? fault : null
     }
 
+    /** Rows of checks of a curve; the last one is that of its end. */
+    private checked(table: number): number {
+        const { work, rows, data } = this
+        this.kernels.numbers.fill(0, work, work + 4)
+        this.scan("check", work, table, rows, data.samples + 1)
+        return rows
+    }
+
+    private readonly sampled = (i: number): number => (2 * i / (this.data.samples - (this.data.closed ? 0 : 1)) - 1) * Math.PI
     /** Whether strands of the kept curve cross or are too close to each other. */
     private ambiguities(): string[] {
-        const { work, rows, edit } = this
-        const { numbers } = this.kernels
-        const { row, samples } = edit
-        let [near, crosses] = [false, false]
+        const { work, rows, edit: { row }, data: { samples, pieces, closed }, kernels: { numbers } } = this
         const length = this.length()
-        for (let i = 0, next = rows + row; i < samples - 1; i++, next += row) {
+        if (pieces) for (let i = 0; i < samples; i++) numbers[rows + row * i + row - 1] = this.draws(this.sampled(i)) ? 1 : 0
+        const [apart, segments] = pieces ? [2, samples - (closed ? 0 : 1)] : [1, samples] // neighbours of a drawing share a point
+        let [near, crosses] = [false, false]
+        for (let i = 0; i + apart < segments; i++) {
+            const here = rows + row * i, last = pieces && closed && !i ? segments - 1 : segments
             numbers.set([0, 0, 0, 0, length], work)
-            this.scan("strands", work, next - row, next, samples - 1 - i)
+            this.loop("strands", work, here, here + apart * row, last - i - apart)
             if (numbers[work]) near = true
             if (numbers[work + 1]) crosses = true
         }
@@ -223,8 +360,20 @@ export class Path {
         return this.kernels.pair(this.work + 8)
     }
 
+    /** The point in the picture of the curve whose values are somewhere. */
+    private seen(values: number): Point {
+        const { work, figure: { sizes: { p } } } = this
+        this.call("at", values, work)
+        this.call("place", work, work + p)
+        return this.kernels.pair(work + p)
+    }
+
     private readonly call = (name: string, ...places: number[]) =>
         this.kernels.call(`${name}.${this.data.kind}`, ...places)
-    private readonly scan = (name: string, state: number, constants: number, rows: number, count: number) =>
+    /** A scan along a curve, of which it takes what a step needs. */
+    private readonly scan = (name: string, state: number, table: number, results: number, count: number) =>
+        this.kernels.loop(`${name}.${this.data.kind}`, [state, this.pieces, table, results], count)
+    /** A scan along rows, in which its results are. */
+    private readonly loop = (name: string, state: number, constants: number, rows: number, count: number) =>
         this.kernels.loop(`${name}.${this.data.kind}`, [state, constants, rows, rows], count)
 }

@@ -26,7 +26,7 @@ export class Side {
     beyond: { effort: EffortData; gave: number } | null = null
     ticks = 0
     distance = 0
-    most = 0 // largest distance since it was held back
+    most = 0 // largest distance from what is drawn since it was held back
     law = this.data.law
     /** Which variant of its loop runs, and numbers in its settings; see changes.ts. */
     private variant = 0
@@ -67,7 +67,8 @@ export class Side {
         kernels.numbers.set(path.data.states[this.law]!, state)
         kernels.numbers.set(path.data.settings, this.settings)
         this.configure(this.variant, this.numbers)
-        if (path.edited) this.call(`begin${this.law}`, path.table, state, state)
+        if (path.edited) this.call(`begin${this.law}`, path.valuesAt(0), state, state)
+        this.tune()
         this.held = this.isPast = false
         this.pulledBy = this.beyond = null
         this.stopped = this.ticks = this.most = 0
@@ -94,6 +95,7 @@ export class Side {
     advance(ticks: number): void {
         if (this.stopped) return
         const { kernels, state, settings, log, sizes } = this
+        this.tune()
         kernels.copy(this.row, log, sizes.log)
         kernels.loop(this.loop, [state, settings, this.path.table, log + sizes.log], ticks)
         for (let i = 1; i <= ticks && !this.stopped; i++, this.ticks++) {
@@ -150,8 +152,8 @@ export class Side {
             if (logged) this.kernels.copy(this.field("y"), this.y, this.sizes.p)
             else this.call("tip", this.state + state.q[0], this.y)
             this.kernels.copy(this.y, this.settings + places.hold_anchor[0], this.sizes.p)
-            this.call("brake", this.path.table, this.y, theta, tangent)
-            this.most = this.distance
+            this.call("brake", this.path.valuesAt(this.kernels.numbers[theta]!), tangent)
+            this.most = this.path.draws(this.kernels.numbers[theta]!) ? this.distance : 0
         }
         this.held = on
         this.set(places.hold_active[0], on ? 1 : 0)
@@ -217,7 +219,7 @@ export class Side {
         const tip = vector(this.field("y")), force = vector(this.field("force")), closest = vector(this.nearest + 1)
         let reference: Vector | null = null, straight: Vector | null = null
         if (this.does().aim === "theta_ref") {
-            this.call("at", this.path.table, this.field("theta_ref"), this.y)
+            this.path.at(kernels.numbers[this.field("theta_ref")]!, this.y)
             reference = vector(this.y)
         }
         if (sizes.rigid < sizes.n) {
@@ -242,6 +244,12 @@ export class Side {
         this.measure()
     }
 
+    /** Let the loop know the bends of a drawing that is bent. */
+    private tune(): void {
+        const { path } = this
+        if (path.edited && path.data.turning !== null) this.set(path.data.turning, path.turning)
+    }
+
     private excess(): Side["beyond"] {
         const gave = ({ motor }: EffortData) => Math.abs(this.kernels.numbers[this.field("u") + motor]!)
         const effort = this.figure.efforts.find(each => gave(each) > each.most)
@@ -249,14 +257,15 @@ export class Side {
     }
 
     private measure(): void {
-        const { table, grid } = this.path
-        this.call("distance", table, grid, this.field("y"), this.field("theta"), this.nearest)
+        const [theta, reference] = [this.field("theta"), this.field("theta_ref")].map(place => this.kernels.numbers[place]!) as [number, number]
+        const strands = this.does().aim === "theta_ref" ? [theta, reference] : [theta]
+        this.path.nearest(this.field("y"), strands, this.nearest)
         this.distance = this.kernels.numbers[this.nearest]!
-        if (this.held) this.most = Math.max(this.most, this.distance)
+        if (this.held && this.path.draws(theta)) this.most = Math.max(this.most, this.distance)
     }
 
     private aimed(at: "theta" | "theta_ref"): Point {
-        this.call("at", this.path.table, this.seen(at), this.y)
+        this.path.at(this.kernels.numbers[this.seen(at)]!, this.y)
         return this.point("place", this.y)
     }
 

@@ -20,7 +20,9 @@ from onpath.models.control.law_poles import channels_of
 from onpath.models.errors import Message
 from onpath.models.paths.curve_faults import ambiguities
 from onpath.models.paths.path_design import presets
+from onpath.models.paths.spline_fit import spline_through
 from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
+from tests.support.drawings import scrawl
 from tests.support.figure_runs import Act, PythonFigure
 from tests.support.node_page import NodePage, needs_node
 from tests.support.robot_files import HEAVY, urdf
@@ -28,10 +30,27 @@ from tests.support.waiting import wait_for
 
 pytestmark = [pytest.mark.thorough, needs_node]
 WAIT = 60.0  # [s]
+LETTERS = (
+    [(-0.05, -0.02), (-0.04, 0.02), (-0.03, -0.02)],
+    [(-0.045, -0.005), (-0.035, -0.005)],
+    [(-0.01, 0.02), (-0.01, -0.02), (0.01, -0.02)],
+)
+"""An A and an L, in three strokes, [m]."""
+TIPS = np.pi / 5 * np.arange(10)
+STAR = np.where(np.arange(10) % 2, 0.4, 1.0)[:, None] * np.column_stack(
+    [np.sin(TIPS), np.cos(TIPS)]
+)
 LAWS = ("trajectory_tracking", "path_following")
 PATHS = ("circle", "clover", "segment")
+DRAWINGS = {
+    "letters": spline_through([np.array(each) for each in LETTERS]),
+    "scrawl": scrawl(3),
+    "star": spline_through([0.05 * STAR], closed=True),
+}
 OTHERS = ("waiting_clock", "set_point")
 CLOSE = 1e-12
+BENDS = 1e-10
+"""On drawings: sharp bends make other roundings of a sine larger."""
 EDITED = 1e-10
 """After an edit: the curve itself is fitted with other roundings, to 1e-13."""
 ACT = """([what, value]) => {
@@ -163,6 +182,60 @@ def test_the_same_inputs_give_the_trajectory_of_python(file: Path, script: list[
             assert max(abs(np.array(opened.number(TABLE)) - python.editor.table)) < 1e-11
             expected = [side.distance() for side in python.sides]
             np.testing.assert_allclose(opened.number(DISTANCES), expected, atol=1e-5)
+    opened.page.close()
+
+
+def drawings(robot: str = "five_bar") -> FigureChoice:
+    paths = {**DRAWINGS, "circle": presets()["circle"].curve}
+    return chosen(robot, LAWS, paths, NEWCOMER, choices=OTHERS)
+
+
+@pytest.fixture(scope="module")
+def drawn(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    file = tmp_path_factory.mktemp("figures") / "drawings.html"
+    file.write_text(figure_page(drawings(), ENGLISH), encoding="utf-8")
+    return file
+
+
+QUICK = [("set", {"speed": 6.0, "K1": 100.0})]
+TORN = [("advance", 700), ("hold", True), ("advance", 500), ("hold", False), ("advance", 900)]
+
+
+@settings(max_examples=8, deadline=None)
+@given(acts())
+@example([("choose", 1), *QUICK, *TORN, ("change", [1, 2]), *TORN])
+def test_a_drawing_is_followed_as_in_python(drawn: Path, script: list[Act]) -> None:
+    opened, python = Opened(drawn), PythonFigure(drawings())
+    for act in (*(act for act in script if act[0] != "move"), ("advance", 1000)):
+        opened.do(act)
+        python.act(act)
+        if act[0] == "advance":
+            found = np.array(opened.number(LOGGED))
+            np.testing.assert_allclose(found, np.array(python.rows()), rtol=0, atol=BENDS)
+            for seen, side in zip(opened.number(DISTANCES), python.sides, strict=True):
+                assert side.distance() - 1e-5 <= seen <= side.gap() + 1e-12
+    assert opened.number("complaints") == []
+    opened.page.close()
+
+
+@pytest.mark.parametrize("number", range(len(DRAWINGS)))
+def test_a_drawing_is_drawn_within_a_tenth_of_a_millimetre(drawn: Path, number: int) -> None:
+    opened, curve = Opened(drawn), [*DRAWINGS.values()][number]
+    opened.do(("choose", number))
+    parts = opened.number("onpath.simulation.followed.parts")
+    assert [part["raised"] for part in parts] == [i % 2 == 1 for i in range(len(parts))]
+    edges = np.array([-np.pi, *np.ravel(curve.raised), np.pi])
+    assert len(parts) == len(edges) - 1
+    robot = drawings().machine
+    for part, begin, end in zip(parts, edges[:-1], edges[1:], strict=True):
+        line = np.array(part["points"])
+        theta = np.linspace(begin, end, 20 * len(line) + 1)
+        there = (robot.seen @ robot.position(robot.frame.lift(curve.at(theta))).T).T
+        np.testing.assert_allclose(line[[0, -1]], there[[0, -1]], atol=1e-9)
+        share = np.linspace(0, 1, len(line))
+        between = np.linspace(0, 1, len(theta))
+        shown = np.column_stack([np.interp(between, share, line[:, k]) for k in (0, 1)])
+        assert np.abs(shown - there).max() < 1e-4
     opened.page.close()
 
 

@@ -22,15 +22,18 @@ from onpath.app.exports.standalone.figure_page import figure_page
 from onpath.assets import asset_path
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.arrays import Array
-from onpath.models.closed_loop.page_functions import GRID, grid_of, page_functions, stop_reasons
+from onpath.models.closed_loop.page_functions import page_functions, stop_reasons
 from onpath.models.closed_loop.simulation import brake_at, kind_of, raised
 from onpath.models.control.laws.registry import law_named
-from onpath.models.paths.distance import path_distance
 from onpath.models.paths.path_design import presets
+from onpath.models.standalone.curve_scans import curve_scans
 from onpath.models.systems.catalogue import ROBOTS
 from tests.support.cases import drawn, some
+from tests.support.drawings import random_drawing
+from tests.support.page_scans import steps_along
 
 CURVES = {name: presets()[name].curve for name in ("circle", "clover", "segment")}
+DRAWINGS = {name: random_drawing(2, 60, 0.02, name == "ring") for name in ("ring", "scrawl")}
 LARGEST = 1_500_000  # [B]
 
 
@@ -38,32 +41,29 @@ def numbers(function: Any, *arguments: Any) -> Array:
     return np.array(function(*arguments)).ravel(order="F")
 
 
-@pytest.mark.parametrize("name", CURVES)
+@pytest.mark.parametrize("name", [*CURVES, *DRAWINGS])
 @settings(max_examples=3)
 @given(robot=st.sampled_from(list(ROBOTS)))
 def test_what_a_page_computes_is_what_the_lab_computes(robot: str, name: str) -> None:
     entry, rng = ROBOTS[robot], np.random.default_rng(1)
     machine = entry.make(entry.parameters())
-    curve = raised(CURVES[name], entry.parameters())
+    curve = raised({**CURVES, **DRAWINGS}[name], entry.parameters())
     kind = kind_of("path_following", entry.parameters(), curve)
     functions = page_functions(machine, kind)
-    table = curve.table().reshape(kind.table_shape, order="F")
-    grid = grid_of(machine, curve.at(curve.sample(GRID))).T
-    theta = rng.uniform(-4, 4, 60)
-    y = machine.frame.lift(curve.at(theta)) + rng.normal(0, 0.015, (60, machine.system.p))
-    expected = path_distance(machine.frame, curve, y)
-    found = [numbers(functions["distance"], table, grid, each, rng.uniform(-3, 3)) for each in y]
-    distances, closest = np.array(found)[:, 0], np.array(found)[:, 1:]
-    np.testing.assert_allclose(distances, expected, atol=1e-5)
-    assert np.median(np.abs(distances - expected)) < 1e-12
-    np.testing.assert_allclose(np.linalg.norm(y - closest, axis=1), distances, atol=1e-15)
-    assert path_distance(machine.frame, curve, closest).max() < 1e-9
+    scan, begin, step = curve_scans(machine, kind)["curve"], -4.0, float(rng.uniform(0.1, 0.3))
+    _, rows = steps_along(scan, kind, curve, np.array([0, begin, step, 3.9]), 30)
+    theta = np.minimum(begin + np.arange(30) * step, 3.9)
+    every = np.concatenate(curve.all_orders(theta), axis=1)
+    np.testing.assert_allclose(rows, every, rtol=1e-11, atol=1e-11 * np.abs(every).max())
+    found = [numbers(functions["at"], each) for each in rows]
+    np.testing.assert_allclose(found, machine.frame.lift(curve.at(theta)), atol=1e-14)
     q = machine.rest(machine.frame.lift(curve.at(np.array(0.4))))
     tip, end = numbers(functions["tip"], q), machine.endpoint(q)
     np.testing.assert_allclose(tip, end, atol=1e-15)
     seen = numbers(functions["place"], end)
     np.testing.assert_allclose(np.array(functions["picture"](q)[0])[:, -1], seen, atol=1e-15)
-    brake = numbers(functions["brake"], table, end, 0.4)
+    _, (there,) = steps_along(scan, kind, curve, np.array([0, 0.4, 0, 0.4]), 1)
+    brake = numbers(functions["brake"], there)
     np.testing.assert_allclose(brake, brake_at(machine, curve, end, 0.4)[1], atol=1e-14)
     moved = numbers(functions["hand"], end, seen, seen + [0.01, -0.02])
     np.testing.assert_allclose(numbers(functions["place"], moved), seen + [0.01, -0.02], atol=1e-15)

@@ -24,11 +24,13 @@ from onpath.models.closed_loop.translated_loop import fastest_batch, translate_l
 from onpath.models.paths.distance import path_distance
 from onpath.models.paths.space_curves import saddle
 from onpath.models.paths.spline_curves import DEGREE, MOST_PIECES, SplineCurve
+from onpath.models.standalone.curve_scans import curve_scans
 from onpath.models.systems.catalogue import ROBOTS
 from tests.support.drawings import random_drawing, scrawl
 from tests.support.node_page import NodePage, needs_node
+from tests.support.page_scans import steps_along
 from tests.support.pulls import parameters_of, troubled
-from tests.support.wasm_runs import rows_in_node
+from tests.support.wasm_runs import rows_in_node, scanned_in_node
 
 TICKS = 400
 LAWS = "path_following", "trajectory_tracking"
@@ -97,11 +99,32 @@ def page() -> Iterator[NodePage]:
 
 @needs_node
 @pytest.mark.parametrize("law", LAWS)
-def test_webassembly_reads_the_same_piece(page: NodePage, law: str) -> None:
+def test_webassembly_goes_the_same_way_but_for_the_sines_of_another_library(
+    page: NodePage, law: str
+) -> None:
     for closed, pieces in ((True, 17), (False, 90)):
         kernel, given = a_run("five_bar", law, random_drawing(2, pieces, closed=closed), 4)
         wanted = InterpretedLoop(kernel).run(*given, TICKS)[1]
-        assert rows_in_node(page, kernel, *given, TICKS) == pytest.approx(wanted, rel=0, abs=1e-9)
+        assert rows_in_node(page, kernel, *given, TICKS) == pytest.approx(wanted, rel=0, abs=1e-12)
+
+
+@needs_node
+@pytest.mark.parametrize("pieces", [5, 60, MOST_PIECES])
+@pytest.mark.parametrize("closed", [True, False])
+def test_webassembly_reads_a_drawing_bit_for_bit(page: NodePage, pieces: int, closed: bool) -> None:
+    curve, parameters = (
+        random_drawing(pieces, pieces, 0.03, closed),
+        ROBOTS["five_bar"].parameters(),
+    )
+    kind = kind_of("path_following", parameters, curve)
+    scan = curve_scans(ROBOTS["five_bar"].make(parameters), kind)["curve"]
+    state, count = np.array([0, -4.0, 8 / 300, 4.0]), 301
+    _, wanted = steps_along(scan, kind, curve, state, count)
+    pieces_of = np.array([float(pieces)])
+    found = scanned_in_node(page, scan, state, pieces_of, curve.table(), count)
+    np.testing.assert_array_equal(found, wanted)
+    every = np.concatenate(curve.all_orders(state[1] + np.arange(count) * state[2]), axis=1)
+    assert found[:-1] == pytest.approx(every[:-1], rel=1e-10, abs=1e-12 * np.abs(every).max())
 
 
 @pytest.mark.parametrize("closed", [True, False])

@@ -96,12 +96,13 @@ def page_checks(name: str, closed: bool) -> Checks:
     kind = kind_of("path_following", entry.parameters(), circle(0.05) if closed else LINE)
     scans = edit_scans(robot, kind)
     check = scans["check"].step.mapaccum(SAMPLES + 1)
+    none = np.zeros(SAMPLES + 1)
     i, j = np.triu_indices(SAMPLES, 1)
     strands = scans["strands"].step.map(len(i))
 
     def found(curve: Curve) -> dict[str, Array]:
         every = np.tile(curve.table(), SAMPLES + 1)
-        _, rows = evaluated(check, np.zeros(4), every, np.zeros((SAMPLES + 1, 0)))
+        _, rows = evaluated(check, np.zeros(4), none, every)
         state = np.zeros((len(i), 5))
         state[:, 4] = rows[-1, 2]
         both = np.hstack([rows[:-1], rows[1:]])
