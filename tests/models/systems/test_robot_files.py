@@ -30,7 +30,7 @@ from onpath.models.studies.experiments import on_path, run
 from onpath.models.systems.contract import faults_of
 from onpath.models.systems.robot_file import read_robot
 from onpath.models.systems.robots import RobotEntry
-from onpath.models.systems.system import GRAVITY
+from tests.support.mujoco_peer import MuJoCo, equation_errors, loop_error
 from tests.support.robot_files import PLANAR, SEVEN, urdf
 from tests.support.some_chains import random_arm
 
@@ -82,80 +82,16 @@ def test_the_contract_of_every_robot_holds(arm: Arm) -> None:
     assert faults_of(arm.entry) == []
 
 
-class MuJoCo:
-    """The same file in MuJoCo: an independent simulation, whose results must agree.
-
-    Its contacts and limits are switched off.
-    """
-
-    def __init__(self, file: Path) -> None:
-        self.api: Any = pytest.importorskip("mujoco")
-        spec = self.api.MjSpec.from_file(str(file))
-        spec.compiler.fusestatic = False
-        spec.compiler.discardvisual = True
-        self.model = spec.compile()
-        self.model.opt.gravity = (0, 0, -GRAVITY)
-        flags = self.api.mjtDisableBit
-        self.model.opt.disableflags |= flags.mjDSBL_CONTACT | flags.mjDSBL_LIMIT
-        self.model.opt.integrator = self.api.mjtIntegrator.mjINT_RK4
-        self.model.opt.timestep = 1e-3
-        self.data = self.api.MjData(self.model)
-
-    def at(self, q: Array, v: Array) -> tuple[Array, Array, Array]:
-        """M, c less friction, and the tip."""
-        self.data.qpos[:], self.data.qvel[:] = q, v
-        self.api.mj_forward(self.model, self.data)
-        mass = np.zeros((self.model.nv, self.model.nv))
-        self.api.mj_fullM(self.model, self.data, mass)
-        bias = self.data.qfrc_bias - self.data.qfrc_passive
-        return mass, bias.copy(), self.data.body("tip").xpos.copy()
-
-    def step(self, torque: Array) -> tuple[Array, Array]:
-        """q and v a millisecond later."""
-        self.data.qfrc_applied[:] = torque
-        self.api.mj_step(self.model, self.data)
-        return self.data.qpos.copy(), self.data.qvel.copy()
-
-
 def test_equations_are_those_of_mujoco(arm: Arm) -> None:
     """M, c and the tip to 1e-9, at random states."""
-    peer, parameters = MuJoCo(arm.file), arm.entry.parameters()
-    robot = arm.entry.make(parameters)
-    parts, plant = robot.system.function("mass", "bias", "output"), robot.plant(parameters)
-    for q, v in states(arm.entry):
-        mass, bias, y = (np.array(x) for x in parts(q, v, plant))
-        expected_mass, expected_bias, tip = peer.at(q, v)
-        scale = max(1.0, float(np.abs(expected_bias).max()))
-        assert np.abs(mass - expected_mass).max() < 1e-9
-        assert np.abs(bias[:, 0] - expected_bias).max() < 1e-9 * scale
-        assert np.abs(y[:, 0] - robot.output_at(tip)).max() < 1e-9
-        assert np.abs(robot.endpoint(q) - robot.output_at(tip)).max() < 1e-9
+    assert max(equation_errors(arm.entry, MuJoCo(arm.file), states(arm.entry))) < 1e-9
 
 
 @pytest.mark.thorough
 @pytest.mark.parametrize("law", ["path_following", "trajectory_tracking"])
 def test_a_closed_loop_runs_as_with_mujoco_as_the_plant(arm: Arm, law: str) -> None:
-    """The joints agree to 1e-8 rad over 2 s; the tip starts on the path at rest.
-
-    MuJoCo takes the torques that our law gives for our states, one millisecond at a time.
-    """
-    peer, parameters = MuJoCo(arm.file), arm.entry.parameters()
-    robot, curve = arm.entry.make(parameters), circle(RADIUS)
-    kernel = kernel_of(robot, kind_of(law, parameters, curve))
-    loop = translate_loop(kernel)
-    settings = settings_vector(robot, kernel, parameters, curve, FREE)
-    state = first_state(robot, kernel, curve, robot.rest(robot.frame.lift(curve.at(np.array(0.0)))))
-    fields = kernel.state.slices
-    peer.data.qpos[:] = state[fields["q"]]
-    own, table = state.copy(), curve.table()
-    worst = 0.0
-    for _ in range(2000):
-        own, _ = loop.run(own, settings, table, 1)
-        state, rows = loop.run(state, settings, table, 1)
-        q, v = peer.step(kernel.log.unpack(rows)["u"][0])
-        state[fields["q"]], state[fields["v"]] = q, v
-        worst = max(worst, float(np.abs(q - own[fields["q"]]).max()))
-    assert worst < 1e-8
+    """The joints agree to 1e-8 rad over 2 s; the tip starts on the path at rest."""
+    assert loop_error(arm.entry, MuJoCo(arm.file), law, RADIUS) < 1e-8
 
 
 @pytest.mark.thorough
