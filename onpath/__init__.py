@@ -12,7 +12,8 @@ arguments. Robot, path and law come first, in this order, in every function, and
 as `--robot`, `--path` and `--law`: each is a name, a text, a file or an object. A law of one's own
 in CasADi is made with `onpath.followed`, `onpath.tangential` and `onpath.own_gain`, of what
 `help(onpath.View)` lists; one that is a function is given what `help(onpath.Now)` lists.
-`onpath.sweep` and `onpath.arena` take several of each, and `onpath.figure` makes a live page.
+`onpath.sweep` and `onpath.arena` take several of each, `onpath.figure` makes a live page, and
+`onpath.controller` a controller for a plant that is elsewhere.
 Names are listed by `onpath.robots()`, `onpath.laws()`, `onpath.paths()` and
 `onpath.parameters("five_bar")`. The same arguments give the same motion here, on the command line,
 in figures and in the lab. A new lab and a figure begin more slowly, as with `**onpath.NEWCOMER`.
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from onpath.app.common.newcomer import NEWCOMER as NEWCOMER
     from onpath.app.notebook.arena import ArenaResult as ArenaResult
     from onpath.app.notebook.arena import arena as arena
+    from onpath.app.notebook.controller import controller as controller
     from onpath.app.notebook.figure import figure as figure
     from onpath.app.notebook.identify import identify as identify
     from onpath.app.notebook.own_law import Now as Now
@@ -59,6 +61,7 @@ __all__ = (
     "arena",
     "check_path",
     "circle",
+    "controller",
     "ellipse",
     "figure",
     "followed",
@@ -80,6 +83,7 @@ __all__ = (
 _MODULES = {
     "ArenaResult": "arena",
     "arena": "arena",
+    "controller": "controller",
     "figure": "figure",
     "identify": "identify",
     "robot": "robot",

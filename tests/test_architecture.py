@@ -36,6 +36,7 @@ ORDER = [
     "models.path_files",
     "models.studies",
     "models.standalone",
+    "models.controller",
     "models.closed_loop",
     "models.control",
     "models.systems",

@@ -12,6 +12,7 @@ from onpath.app.cli.arena import ArenaCommand
 from onpath.app.cli.compare import CompareCommand
 from onpath.app.cli.completion import completion_script
 from onpath.app.cli.experiment import ExperimentCommand, ZeroDynamicsCommand
+from onpath.app.cli.export_controller import ExportController
 from onpath.app.cli.export_lesson import ExportLesson
 from onpath.app.cli.export_site import ExportSite
 from onpath.app.cli.figure import FigureCommand
@@ -82,8 +83,8 @@ COMMANDS: Mapping[str, type[Subcommand] | CommandGroup] = {
         },
     ),
     "export": CommandGroup(
-        "Write the course as pages, or a lesson for a learning platform; both need no server.",
-        {"site": ExportSite, "lesson": ExportLesson},
+        "Write the course as pages, a lesson for a learning platform, or a controller in C.",
+        {"site": ExportSite, "lesson": ExportLesson, "controller": ExportController},
     ),
     "forget": Forget,
     "completion": CompletionCommand,

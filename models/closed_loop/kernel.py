@@ -145,8 +145,7 @@ def build_kernel(
     law = law_named(kind.law)
     if not law.suits(system) or (kind.output == "composite" and not law.commands_acceleration):
         raise CodedError("error.law_does_not_suit", law=law.label)
-    if kind.space:
-        frame = _space(system, frame, kind)
+    frame = frame_of(system, frame, kind)
     try:
         return _kernel(system, frame, kind, law, (substeps, grip))
     except CodedError:
@@ -175,8 +174,14 @@ def _kernel(
     )
 
 
-def _space(system: MechanicalSystem, frame: Frame, kind: Kind) -> Frame:
-    """The frame of space curves."""
+def frame_of(system: MechanicalSystem, frame: Frame, kind: Kind) -> Frame:
+    """The robot's frame, or that of space curves.
+
+    Raises:
+        ValueError: the robot takes no space curves here.
+    """
+    if not kind.space:
+        return frame
     if frame.space is None or kind.level_set or kind.output == "composite":
         raise ValueError(f"{system.name}: a space curve cannot be followed here")
     return frame.space

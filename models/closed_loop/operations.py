@@ -1,6 +1,7 @@
 """CasADi's scalar operations in the languages to which loops are translated.
 
-In LLVM each gives the same bits as in CasADi's virtual machine, since both call the same C library.
+In LLVM and C each gives the same bits as in CasADi's virtual machine, since all call the same C
+library.
 In WebAssembly all but the functions of `LIBRARY` do; those are the browser's, and may differ in the
 last bit, hypot in the last two. `fmod` and `remainder` are exact everywhere.
 """
@@ -18,15 +19,17 @@ from onpath.models.errors import CodedError
 
 @dataclass(frozen=True, slots=True)
 class Operation:
-    """An operation in both languages.
+    """An operation in all three languages.
 
     Attributes:
         llvm: instructions; {0} and {1} are the operands, {v} is the result.
         wasm: stack code; 0 and 1 are the operands, =x is a constant. Empty: there is none.
+        c: an expression in C99; {0} and {1} are the operands.
     """
 
     llvm: str
     wasm: str
+    c: str
 
     @property
     def operands(self) -> int:
@@ -48,22 +51,30 @@ def _called(name: str) -> Operation:
     places = range(LIBRARY[name])
     given = ", ".join(f"double {{{i}}}" for i in places)
     stack = " ".join([*map(str, places), name]) if name in MATHEMATICS else ""
-    return Operation(f"{{v}} = call double @{name}({given})", stack)
+    arguments = ", ".join(f"{{{i}}}" for i in places)
+    return Operation(f"{{v}} = call double @{name}({given})", stack, f"{name}({arguments})")
 
 
-def _compared(llvm: str, wasm: str) -> Operation:
+def _rounded(name: str, wasm: str) -> Operation:
+    """An operation of one operand that is exact, or rounded in the only right way."""
+    return Operation(f"{{v}} = call double @llvm.{name}.f64(double {{0}})", wasm, f"{name}({{0}})")
+
+
+def _compared(llvm: str, wasm: str, c: str) -> Operation:
     """A comparison, 0 or 1."""
     truth = f"{{v}}.is = fcmp {llvm}\n  {{v}} = uitofp i1 {{v}}.is to double"
-    return Operation(truth, f"{wasm} f64.convert_i32_u")
+    return Operation(truth, f"{wasm} f64.convert_i32_u", f"{c} ? 1.0 : 0.0")
 
 
 def _connected(word: str) -> Operation:
     """Two operands connected by "and" or "or"; all numbers but 0 are true, and so is NaN."""
     llvm = [f"{{v}}.{i} = fcmp une double {{{i}}}, 0.0" for i in (0, 1)]
     llvm += [f"{{v}}.is = {word} i1 {{v}}.0, {{v}}.1", "{v} = uitofp i1 {v}.is to double"]
-    return Operation("\n  ".join(llvm), f"0 =0 f64.ne 1 =0 f64.ne i32.{word} f64.convert_i32_u")
+    c = f"({{0}} != 0.0) {_IN_C[word]} ({{1}} != 0.0) ? 1.0 : 0.0"
+    return Operation("\n  ".join(llvm), f"0 =0 f64.ne 1 =0 f64.ne i32.{word} f64.convert_i32_u", c)
 
 
+_IN_C = {"and": "&&", "or": "||"}
 _SIGN = """{v}.up = fcmp ogt double {0}, 0.0
   {v}.down = fcmp olt double {0}, 0.0
   {v}.not = select i1 {v}.up, double 1.0, double {0}
@@ -72,39 +83,49 @@ _IF_ELSE_ZERO = """{v}.is = fcmp une double {0}, 0.0
   {v} = select i1 {v}.is, double {1}, double 0.0"""
 
 OPERATIONS = {
-    ca.OP_ADD: Operation("{v} = fadd double {0}, {1}", "0 1 f64.add"),
-    ca.OP_SUB: Operation("{v} = fsub double {0}, {1}", "0 1 f64.sub"),
-    ca.OP_MUL: Operation("{v} = fmul double {0}, {1}", "0 1 f64.mul"),
-    ca.OP_DIV: Operation("{v} = fdiv double {0}, {1}", "0 1 f64.div"),
-    ca.OP_NEG: Operation("{v} = fneg double {0}", "0 f64.neg"),
-    ca.OP_INV: Operation("{v} = fdiv double 1.0, {0}", "=1 0 f64.div"),
-    ca.OP_SQ: Operation("{v} = fmul double {0}, {0}", "0 0 f64.mul"),
-    ca.OP_TWICE: Operation("{v} = fadd double {0}, {0}", "0 0 f64.add"),
-    ca.OP_SQRT: Operation("{v} = call double @llvm.sqrt.f64(double {0})", "0 f64.sqrt"),
-    ca.OP_FABS: Operation("{v} = call double @llvm.fabs.f64(double {0})", "0 f64.abs"),
-    ca.OP_FLOOR: Operation("{v} = call double @llvm.floor.f64(double {0})", "0 f64.floor"),
-    ca.OP_CEIL: Operation("{v} = call double @llvm.ceil.f64(double {0})", "0 f64.ceil"),
+    ca.OP_ADD: Operation("{v} = fadd double {0}, {1}", "0 1 f64.add", "{0} + {1}"),
+    ca.OP_SUB: Operation("{v} = fsub double {0}, {1}", "0 1 f64.sub", "{0} - {1}"),
+    ca.OP_MUL: Operation("{v} = fmul double {0}, {1}", "0 1 f64.mul", "{0} * {1}"),
+    ca.OP_DIV: Operation("{v} = fdiv double {0}, {1}", "0 1 f64.div", "{0} / {1}"),
+    ca.OP_NEG: Operation("{v} = fneg double {0}", "0 f64.neg", "-{0}"),
+    ca.OP_INV: Operation("{v} = fdiv double 1.0, {0}", "=1 0 f64.div", "1.0 / {0}"),
+    ca.OP_SQ: Operation("{v} = fmul double {0}, {0}", "0 0 f64.mul", "{0} * {0}"),
+    ca.OP_TWICE: Operation("{v} = fadd double {0}, {0}", "0 0 f64.add", "{0} + {0}"),
+    ca.OP_SQRT: _rounded("sqrt", "0 f64.sqrt"),
+    ca.OP_FABS: _rounded("fabs", "0 f64.abs"),
+    ca.OP_FLOOR: _rounded("floor", "0 f64.floor"),
+    ca.OP_CEIL: _rounded("ceil", "0 f64.ceil"),
     ca.OP_COPYSIGN: Operation(
-        "{v} = call double @llvm.copysign.f64(double {0}, double {1})", "0 1 f64.copysign"
+        "{v} = call double @llvm.copysign.f64(double {0}, double {1})",
+        "0 1 f64.copysign",
+        "copysign({0}, {1})",
     ),
-    ca.OP_SIGN: Operation(_SIGN, "=-1 =1 0 =0 0 f64.lt select 0 =0 f64.lt select"),
+    ca.OP_SIGN: Operation(
+        _SIGN,
+        "=-1 =1 0 =0 0 f64.lt select 0 =0 f64.lt select",
+        "{0} > 0.0 ? 1.0 : {0} < 0.0 ? -1.0 : {0}",
+    ),
     # of a NaN and a number, the number; of equal ones, the first
     ca.OP_FMIN: Operation(
         "{v} = call double @llvm.minnum.f64(double {0}, double {1})",
         "0 1 0 1 f64.le 1 1 f64.ne i32.or select",
+        "{0} <= {1} || {1} != {1} ? {0} : {1}",
     ),
     ca.OP_FMAX: Operation(
         "{v} = call double @llvm.maxnum.f64(double {0}, double {1})",
         "0 1 1 0 f64.le 1 1 f64.ne i32.or select",
+        "{0} >= {1} || {1} != {1} ? {0} : {1}",
     ),
-    ca.OP_LT: _compared("olt double {0}, {1}", "0 1 f64.lt"),
-    ca.OP_LE: _compared("ole double {0}, {1}", "0 1 f64.le"),
-    ca.OP_EQ: _compared("oeq double {0}, {1}", "0 1 f64.eq"),
-    ca.OP_NE: _compared("une double {0}, {1}", "0 1 f64.ne"),
-    ca.OP_NOT: _compared("oeq double {0}, 0.0", "0 =0 f64.eq"),
+    ca.OP_LT: _compared("olt double {0}, {1}", "0 1 f64.lt", "{0} < {1}"),
+    ca.OP_LE: _compared("ole double {0}, {1}", "0 1 f64.le", "{0} <= {1}"),
+    ca.OP_EQ: _compared("oeq double {0}, {1}", "0 1 f64.eq", "{0} == {1}"),
+    ca.OP_NE: _compared("une double {0}, {1}", "0 1 f64.ne", "{0} != {1}"),
+    ca.OP_NOT: _compared("oeq double {0}, 0.0", "0 =0 f64.eq", "{0} == 0.0"),
     ca.OP_AND: _connected("and"),
     ca.OP_OR: _connected("or"),
-    ca.OP_IF_ELSE_ZERO: Operation(_IF_ELSE_ZERO, "1 =0 0 =0 f64.ne select"),
+    ca.OP_IF_ELSE_ZERO: Operation(
+        _IF_ELSE_ZERO, "1 =0 0 =0 f64.ne select", "{0} != 0.0 ? {1} : 0.0"
+    ),
     ca.OP_CONSTPOW: _called("pow"),
     **{getattr(ca, f"OP_{name.upper()}"): _called(name) for name in LIBRARY},
 }

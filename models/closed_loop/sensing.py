@@ -37,7 +37,7 @@ def measure(
     if kind.observer:
         estimate = corrected(state, settings, reading)
     else:
-        estimate = reading, ca.vertcat(_filtered(state, settings, reading[:joints]), v[joints:])
+        estimate = reading, ca.vertcat(filtered(state, settings, reading[:joints]), v[joints:])
     if not kind.encoder:  # exact angles have exact velocities
         noisy, exact = settings["sensor_noise"] > 0, (reading, v)
         angles, rates = (
@@ -48,7 +48,7 @@ def measure(
     return *estimate, reading[:joints]
 
 
-def _filtered(state: Fields, settings: Fields, reading: ca.SX) -> ca.SX:
+def filtered(state: Fields, settings: Fields, reading: ca.SX) -> ca.SX:
     """The velocities by the filter of `measure`, (joints, 1)."""
     dt = settings["dt"] * settings["hold_ticks"]
     weight = dt / (settings["encoder_filter"] + dt)

@@ -1,0 +1,1 @@
+"""A controller as C, for a robot that is elsewhere."""

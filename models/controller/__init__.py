@@ -1,0 +1,1 @@
+"""The controller without the plant: what goes to a real robot."""
