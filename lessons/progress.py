@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Annotated, Literal, cast
 
 import msgspec
@@ -43,6 +44,31 @@ class Answer(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return self.option is None and not self.times
 
 
+class Given(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """One answer, as it was given: what was answered later is another one beside it.
+
+    Attributes:
+        item: what was answered: a prediction, by step, or a question, by step and block.
+        time: seconds since 1970; 0 if unknown.
+        round: how often the item had been asked again by then; 0: never.
+        answer: to a prediction or a quiz.
+        number: to a question whose answer is a number.
+        text: in the student's own words.
+        mark, why_mark: keys of the chosen option and reason; see `lessons.kept`.
+        key: a number by which the browser knows the answer; one that comes again counts once.
+    """
+
+    item: Key
+    time: float = 0.0
+    round: Index = 0
+    answer: Answer | None = None
+    number: float | None = None
+    text: Written = ""
+    mark: Key = ""
+    why_mark: Key = ""
+    key: Key = ""
+
+
 class Truth(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What happened after a prediction: one quantity of both robots over time."""
 
@@ -68,11 +94,13 @@ class Notes(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         written: answers in the student's own words, by step and block.
         twice: quizzes and questions for numbers that have been answered a second time, by step and
             block.
-        asked_again: predictions that the teacher has asked again after a discussion, by step.
+        asked_again: predictions that the teacher has asked again after a discussion, by step; one
+            is in it as often as it was asked again.
         second: the answers to those.
         marks: keys of the chosen options; see `lessons.kept`.
         unknown: keys of choices that cannot be identified, because the lesson has changed.
         handed_in: whether a test has been handed in, after which its answers do not change.
+        given: the answers in the order in which they were given; see `given_to`.
     """
 
     step: Index = 0
@@ -92,6 +120,7 @@ class Notes(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     marks: dict[Key, Key] = {}
     unknown: Annotated[tuple[Key, ...], msgspec.Meta(max_length=1000)] = ()
     handed_in: bool = False
+    given: Annotated[tuple[Given, ...], msgspec.Meta(max_length=10_000)] = ()
 
 
 class Progress(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -112,6 +141,25 @@ class Progress(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     ended: bool = False
 
 
+def given_to(notes: Notes, item: str) -> tuple[Given, ...]:
+    """The answers to an item, in order; of notes from before each was kept, those that remain."""
+    known = tuple(each for each in notes.given if each.item == item)
+    return known or tuple(_remaining(notes, item))
+
+
+def _remaining(notes: Notes, item: str) -> Iterator[Given]:
+    if item in notes.answers:
+        yield Given(item, answer=notes.answers[item])
+    if item in notes.second:
+        yield Given(item, round=notes.asked_again.count(item), answer=notes.second[item])
+    if item in notes.quiz:
+        yield Given(item, answer=Answer(option=notes.quiz[item]))
+    if item in notes.numbers:
+        yield Given(item, number=notes.numbers[item])
+    if item in notes.written:
+        yield Given(item, text=notes.written[item])
+
+
 def read_progress(data: object) -> Progress:
     """The progress in decoded JSON.
 
@@ -124,7 +172,9 @@ def read_progress(data: object) -> Progress:
     progress = msgspec.convert(data, Progress)
     for notes in progress.notes.values():
         numbers = [*notes.tasks.values(), *notes.numbers.values()]
-        for answer in (*notes.answers.values(), *notes.second.values()):
+        numbers += [number for g in notes.given for number in (g.time, g.number or 0.0)]
+        given = [g.answer for g in notes.given if g.answer is not None]
+        for answer in (*notes.answers.values(), *notes.second.values(), *given):
             numbers += [*answer.times, *answer.values]
             if len(answer.times) != len(answer.values):
                 raise ValueError("a sketch with more times than values, or fewer")

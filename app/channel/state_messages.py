@@ -73,6 +73,8 @@ class StateMessage(Struct, frozen=True, kw_only=True, tag_field="is", tag="state
         rows: what can be plotted of these robots.
         laws: names of the robots' control laws; a typed one is its own name.
         shared: the share code that was made last; may be empty.
+        sent: keys of the latest answers that are stored, and of those that cannot be taken: they
+            need not be sent again.
         scene: how many times the page had asked for a picture of the robots when it asked for the
             present one; 0 without one.
     """
@@ -105,4 +107,5 @@ class StateMessage(Struct, frozen=True, kw_only=True, tag_field="is", tag="state
     rows: Annotated[list[dict[str, Any]], Meta(extra={"typescript": "RowData[]"})]
     laws: list[str]
     shared: str
+    sent: list[str]
     scene: int = 0

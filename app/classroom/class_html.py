@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from math import ceil
 
 from onpath.app.classroom.classroom import Member
-from onpath.app.classroom.results import Distribution, tasks_passed
+from onpath.app.classroom.results import Asked, Distribution, tasks_passed
 from onpath.app.classroom.sketches_html import ALL, Picks, SketchRound, sketches_view
 from onpath.app.common.palette import AMBER, GREEN, GREY
 from onpath.app.common.qr_code import qr_code
@@ -15,11 +17,13 @@ from onpath.lessons.concept_test.titles import titles_of_tests
 from onpath.lessons.course import Course
 from onpath.lessons.option_order import LETTERS
 from onpath.lessons.progress import Progress, Truth
-from onpath.lessons.schema import Choice, Prediction, Quiz, Sketch
+from onpath.lessons.schema import Choice, NumberQuestion, Prediction, Quiz, Sketch
 from onpath.lessons.sides import robot_names
+from onpath.lessons.votes import Vote
 from onpath.lessons.words import Words
 from onpath.models.control.sides import DEFAULT_LAWS
 
+MOST_NUMBERS = 8  # different numbers that are shown one by one
 IDLE = 60.0  # [s] without a command after which a student counts as idle
 
 
@@ -158,12 +162,48 @@ def choices_view(
     )
 
 
-def hidden_view(
-    block: Prediction | Quiz, found: Distribution, words: Words, large: bool = False
+@dataclass(frozen=True, slots=True)
+class NumberLine:
+    """A number that students have given, in place of an option."""
+
+    text: str
+    right: bool
+
+
+def numbers_view(
+    block: NumberQuestion, found: Distribution, revealed: bool, words: Words, large: bool = False
 ) -> str:
+    """How many students gave each number, without names; of many, the most frequent ones."""
+    times = Counter(found.numbers)
+    shown = sorted(number for number, _ in times.most_common(MOST_NUMBERS))
+    lines = [
+        (NumberLine(_with_unit(number, block, words), block.accepts(number)), times[number])
+        for number in shown
+    ]
+    if (others := len(found.numbers) - sum(count for _, count in lines)) > 0:
+        lines.append((NumberLine(words("class.other_numbers"), False), others))
+    if revealed and not any(line.right for line, _ in lines):
+        lines.append((NumberLine(_with_unit(block.number, block, words), True), 0))
+    return render(
+        "class/choices.html",
+        block=block,
+        options=[("", line) for line, _ in lines],
+        rounds=[("", tuple(count for _, count in lines), "")],
+        most=max([1, *(count for _, count in lines)]),
+        revealed=revealed,
+        facts=given_line(found, words),
+        large=large,
+    )
+
+
+def _with_unit(number: float, block: NumberQuestion, words: Words) -> str:
+    return f"{words.number(number, 4)} {block.unit}".rstrip()
+
+
+def hidden_view(block: Asked, found: Distribution, words: Words, large: bool = False) -> str:
     """The question, its options, and how many students have answered it."""
     facts = given_line(found, words)
-    if isinstance(block, Sketch):
+    if isinstance(block, Sketch | NumberQuestion):
         return render("class/prediction.html", block=block, facts=facts, large=large)
     return choices_view(block, (), revealed=False, words=words, large=large, facts=facts)
 
@@ -179,7 +219,20 @@ def remark(text: str) -> str:
 
 
 def given_line(found: Distribution, words: Words) -> str:
-    """How many students have answered, skipped, or not answered, and how many answers are lost."""
-    given = sum(found.counts) + len(found.sketches)
-    line = words("class.given", given=given, skipped=found.skipped, waiting=found.waiting)
-    return f"{line} {words('class.unknown', count=found.unknown)}" if found.unknown else line
+    """How many students who are here have answered, and what does not count."""
+    lines = [words("class.given", given=found.answered, here=found.here, away=found.away)]
+    if found.skipped:
+        lines.append(words("class.skipped", count=found.skipped))
+    if found.late:
+        lines.append(words("class.late", count=found.late))
+    if found.unknown:
+        lines.append(words("class.unknown", count=found.unknown))
+    return " ".join(lines)
+
+
+def vote_line(vote: Vote, now: float, words: Words) -> str:
+    """How long a vote is still open, or that it is closed; empty while it is open."""
+    if vote.closes is None:
+        return ""
+    left = vote.closes - now
+    return words("class.closes", seconds=ceil(left)) if left > 0 else words("class.closed")

@@ -9,12 +9,21 @@ from typing import Annotated, Any
 import msgspec
 
 from onpath.app.classroom.admission import cleaned
-from onpath.app.classroom.classroom import MOST_MEMBERS, ClassState, Display, Member, Orders, Push
+from onpath.app.classroom.classroom import (
+    MOST_MEMBERS,
+    MOST_VOTES,
+    ClassState,
+    Display,
+    Member,
+    Orders,
+    Push,
+)
 from onpath.app.common.error_log import log_warning
 from onpath.app.lab.commands import TakeSetup, TakeStep
 from onpath.app.lab.setups.stored import from_data, to_data
 from onpath.lessons.pace import Pace
 from onpath.lessons.progress import Progress
+from onpath.lessons.votes import Vote
 
 SETTLED = 5.0  # [s] after a push is given to a lab; by then the lab is stored with it
 Count = Annotated[int, msgspec.Meta(ge=0)]
@@ -28,10 +37,11 @@ class StoredMember(msgspec.Struct, frozen=True):
     number: Count
     name: str
     taken: Count
+    aside: bool = False
 
 
 class StoredClass(msgspec.Struct, frozen=True):
-    """A class; `push`, `members` and `display` are checked one by one."""
+    """A class; `push`, `members`, `display` and `votes` are checked one by one."""
 
     joined: Count
     frozen: bool
@@ -41,6 +51,7 @@ class StoredClass(msgspec.Struct, frozen=True):
     members: list[Any]
     pace: Pace | None = None
     display: Any = None
+    votes: list[Any] = []
 
 
 def to_stored(state: ClassState, now: float) -> Stored:
@@ -54,7 +65,7 @@ def to_stored(state: ClassState, now: float) -> Stored:
     """
     orders = state.orders
     members = [
-        StoredMember(lab, each.number, each.name, _settled(each, now))
+        StoredMember(lab, each.number, each.name, _settled(each, now), each.aside)
         for lab, each in state.members.items()
     ]
     stored = StoredClass(
@@ -66,6 +77,7 @@ def to_stored(state: ClassState, now: float) -> Stored:
         members=members,
         pace=orders.pace,
         display=asdict(state.display),
+        votes=[asdict(each) for each in state.votes],
     )
     return msgspec.to_builtins(stored)
 
@@ -102,6 +114,7 @@ def from_stored(data: Stored | None, progress: Callable[[str], Progress], now: f
         display=_display(kept.display),
         passes=frozenset(kept.passes),
         members=members,
+        votes=tuple(filter(None, map(_vote, kept.votes[-MOST_VOTES:]))),
     )
 
 
@@ -112,7 +125,9 @@ def _member(data: Any) -> tuple[str, Member] | None:
     except ValueError as error:
         log_warning("a student of the class cannot be read: %s", error)
         return None
-    return kept.session, Member(kept.number, name, connected=False, taken=kept.taken)
+    return kept.session, Member(
+        kept.number, name, connected=False, taken=kept.taken, aside=kept.aside
+    )
 
 
 def _display(data: Any) -> Display:
@@ -123,6 +138,14 @@ def _display(data: Any) -> Display:
         log_warning("what the teacher's page showed cannot be read: %s", error)
         return Display()
     return display
+
+
+def _vote(data: Any) -> Vote | None:
+    try:
+        return msgspec.convert(data, Vote)
+    except ValueError as error:
+        log_warning("a vote of the class cannot be read: %s", error)
+        return None
 
 
 def push_data(push: Push) -> Stored:

@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 from onpath.app.classroom.classroom import Classroom, Orders
 from onpath.app.common.periodic import Periodic
-from onpath.app.lab.commands import Freeze, KeepWithin
+from onpath.app.lab.commands import Freeze, HoldVotes, KeepWithin
 from onpath.app.lab.lab import Lab
 
 SYNC_INTERVAL = 0.25  # [s] between rounds through the labs of a class
@@ -51,6 +51,8 @@ class ClassSync:
             lab.post(Freeze(False))
         if lab.lessons.pace is not None:
             lab.post(KeepWithin(None))
+        if lab.lessons.votes:
+            lab.post(HoldVotes(()))
 
     def _follow(self, code: str) -> None:
         member = self._class.member(code)
@@ -67,7 +69,7 @@ class ClassSync:
         if lab.lessons.progress is not member.progress:
             changes["progress"] = lab.lessons.progress
         if connected != member.connected:
-            changes["connected"] = connected
+            changes |= {"connected": connected, "aside": member.aside and not connected}
         gains = gains_of(lab)
         if gains != member.gains:
             changes["gains"] = gains
@@ -77,6 +79,9 @@ class ClassSync:
         if orders.pushes > member.taken:
             changes["taken"], changes["given"] = orders.pushes, self._class.clock()
         _give(orders, lab, is_new=orders.pushes > member.taken)
+        votes = self._class.open_votes
+        if votes != lab.lessons.votes:
+            lab.post(HoldVotes(votes))
         if changes:
             self._class.note(code, **changes)
 

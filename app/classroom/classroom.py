@@ -9,7 +9,7 @@ import hashlib
 import hmac
 import threading
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import inf
 
@@ -25,9 +25,11 @@ from onpath.app.common.visible_text import comparison_key
 from onpath.app.lab.commands import TakeSetup, TakeStep
 from onpath.lessons.pace import Pace
 from onpath.lessons.progress import Progress
+from onpath.lessons.votes import Vote, vote_on
 from onpath.models.errors import CodedError
 
 MOST_MEMBERS = 300
+MOST_VOTES = 1000
 Push = TakeSetup | TakeStep
 NOTHING_DONE = Progress()
 
@@ -45,6 +47,7 @@ class Member:
         taken: number of the last push given to the lab; 0 for none.
         given: time of that push, on the class's clock, [s].
         gains: the lab's K1 to K5 at the last update; empty before the first one.
+        aside: whether the teacher has set the student aside, who was away; it ends with the return.
     """
 
     number: int
@@ -55,6 +58,7 @@ class Member:
     taken: int = 0
     given: float = -inf
     gains: tuple[float, ...] = ()
+    aside: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,12 +86,18 @@ class Display:
         lesson, step: where the displayed question is asked; the lesson may be gone, or "".
         shown: whether the answers themselves are shown, and not only their number.
         revealed: whether the truth is shown as well.
+        since: seconds since 1970, before which neither is: the vote is still closing.
     """
 
     lesson: str = ""
     step: int = 0
     shown: bool = False
     revealed: bool = False
+    since: float = 0.0
+
+    def seen(self, now: float) -> Display:
+        """What is shown now, [s]."""
+        return self if now >= self.since else replace(self, shown=False, revealed=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +108,7 @@ class ClassState:
         joined: number of students who have ever joined.
         passes: hashes of the teachers' passes.
         members: students by lab code, in order of joining.
+        votes: on the questions that were put to the class.
     """
 
     joined: int = 0
@@ -105,6 +116,7 @@ class ClassState:
     display: Display = field(default_factory=Display)
     passes: frozenset[str] = frozenset()
     members: Mapping[str, Member] = field(default_factory=dict)
+    votes: tuple[Vote, ...] = ()
 
 
 @dataclass(slots=True)
@@ -113,12 +125,14 @@ class Classroom:
 
     Attributes:
         clock: monotonic time, [s].
+        now: seconds since 1970, by which answers are late.
         key: the teacher's key, in the stored form of `app.common.access_codes`.
         code: the class code, the same in every process with this key; it is in the class's address.
         state: everything that is stored; replaced at each change.
     """
 
     clock: Callable[[], float] = time.monotonic
+    now: Callable[[], float] = field(default=time.time, kw_only=True)
     key: str = field(default_factory=new_code, repr=False)
     code: str = field(init=False)
     state: ClassState = field(default_factory=ClassState)
@@ -208,6 +222,18 @@ class Classroom:
         """All members by lab code, in order of joining."""
         return dict(self.state.members)
 
+    def present(self) -> dict[str, Member]:
+        """The members whom the teacher has not set aside."""
+        return {lab: each for lab, each in self.state.members.items() if not each.aside}
+
+    def set_aside(self) -> int:
+        """Set aside everybody who is away, until they come back. Returns how many they are."""
+        with self._lock:
+            away = [lab for lab, each in self.present().items() if not each.connected]
+            for lab in away:
+                self.note(lab, aside=True)
+            return len(away)
+
     def note(self, lab: str, **changes: object) -> None:
         """Update a member. Does nothing if the student has left."""
         with self._lock:
@@ -228,21 +254,66 @@ class Classroom:
         with self._lock:
             self.state = replace(self.state, orders=replace(self.orders, frozen=on))
 
-    def push(self, push: Push | None) -> None:
+    def push(self, push: Push | None, asks: Iterable[str] = ()) -> None:
         """Send a set-up or a step to all members once, and to those who join later.
 
         It remains in effect until another one is sent or the class ends. None clears it without
         changing any lab; students who join later then keep their own set-up. A step that is sent
-        is displayed, too, with its answers hidden: nobody should follow the majority.
+        is displayed, too, with its answers hidden: nobody should follow the majority. The votes on
+        what it asks are open, and those before are closed.
+
+        Args:
+            asks: the items that the class votes on; see `Given.item`.
         """
         with self._lock:
             if isinstance(push, TakeStep):
                 self.show(Display(push.lesson, push.step))
+                self.close(self.open_votes)
+                self._ask(push, asks)
             count, pace = self.orders.pushes + (push is not None), self.orders.pace
             if isinstance(push, TakeStep) and pace and not pace.holds(push.lesson, push.step):
                 pace = None
             new = replace(self.orders, pushes=count, push=push, pace=pace)
             self.state = replace(self.state, orders=new)
+
+    def _ask(self, step: TakeStep, items: Iterable[str]) -> None:
+        """Open the votes on items of a step; one that was closed stays so, and is only asked again
+        after a discussion."""
+        votes = [Vote(step.lesson, item, step.step, again=step.again) for item in items]
+        known = () if step.again else self.votes
+        self._put([e for e in votes if vote_on(known, e.lesson, e.item) is None])
+
+    @property
+    def votes(self) -> tuple[Vote, ...]:
+        """The votes on the questions that were put to the class."""
+        return self.state.votes
+
+    @property
+    def open_votes(self) -> tuple[Vote, ...]:
+        """The votes that are not closed yet."""
+        now = self.now()
+        return tuple(each for each in self.votes if each.is_open(now))
+
+    def close(self, votes: Iterable[Vote], wait: float = 0.0) -> None:
+        """Close votes: whoever answers after `wait`, [s], is late."""
+        closes = self.now() + wait
+        with self._lock:
+            self._put([replace(each, closes=closes) for each in votes])
+
+    def open_again(self, votes: Iterable[Vote]) -> None:
+        """Open votes that were closed by mistake: what was answered meanwhile counts."""
+        with self._lock:
+            self._put([replace(each, closes=None) for each in votes])
+            self.show(replace(self.display, shown=False, revealed=False, since=0.0))
+
+    def _put(self, votes: Sequence[Vote]) -> None:
+        """Keep votes in place of earlier ones on the same questions."""
+        others = [
+            each
+            for each in self.votes
+            if not any(each.is_about(new.lesson, new.item, new.again) for new in votes)
+        ]
+        self.state = replace(self.state, votes=(*others, *votes)[-MOST_VOTES:])
 
     @property
     def display(self) -> Display:
@@ -268,7 +339,7 @@ class Classroom:
         with self._lock:
             old = self.state
             orders = replace(old.orders, frozen=False, push=None, pace=None)
-            self.state = replace(old, members={}, orders=orders, display=Display())
+            self.state = replace(old, members={}, orders=orders, display=Display(), votes=())
             return len(old.members)
 
 

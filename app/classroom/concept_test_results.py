@@ -38,7 +38,12 @@ def item_distribution(
     chosen = [chosen_in(test, notes)[index] for notes in handed]
     counts = tuple(chosen.count(option) for option in range(len(block.options)))
     return Distribution(
-        counts=counts, sketches=(), skipped=chosen.count(None), waiting=len(students) - len(handed)
+        counts=counts,
+        sketches=(),
+        skipped=chosen.count(None),
+        waiting=len(students) - len(handed),
+        here=len(students),
+        answered=sum(counts),
     )
 
 

@@ -6,20 +6,27 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from onpath.lessons.kept.option_keys import second_key
-from onpath.lessons.progress import Answer, Notes, Progress, Truth
-from onpath.lessons.schema import Choice, Lesson, Prediction
+from onpath.lessons.progress import Answer, Notes, Progress, Truth, given_to
+from onpath.lessons.schema import Choice, Lesson, NumberQuestion, Prediction, Quiz, Step
+from onpath.lessons.votes import Vote, counted, is_late, is_skipped
+
+Asked = Prediction | Quiz | NumberQuestion
 
 
 @dataclass(frozen=True, slots=True)
 class Distribution:
-    """The answers of a class to a prediction.
+    """The answers of a class to a question.
 
     Attributes:
         counts: number of answers per option; empty for a sketch.
         sketches: the sketched curves.
         skipped: number of students who skipped it.
         unknown: number of answers that cannot be recovered, since the lesson has changed.
-        waiting: number of students who have not answered.
+        waiting: number of students who are here and have not answered.
+        numbers: the answers to a question for a number.
+        here, away: numbers of students who are here and who are not.
+        answered: number of those here who have answered.
+        late: number of answers that came after the vote was closed, and do not count.
     """
 
     counts: tuple[int, ...]
@@ -27,6 +34,11 @@ class Distribution:
     skipped: int
     waiting: int
     unknown: int = 0
+    numbers: tuple[float, ...] = ()
+    here: int = 0
+    away: int = 0
+    answered: int = 0
+    late: int = 0
 
 
 def prediction_at(lesson: Lesson, index: int) -> tuple[int, Prediction] | None:
@@ -39,31 +51,74 @@ def prediction_at(lesson: Lesson, index: int) -> tuple[int, Prediction] | None:
     return None
 
 
+def questions_of(step: Step, index: int) -> dict[str, Quiz | NumberQuestion]:
+    """The quizzes and the questions for a number of a step, by their items."""
+    return {
+        f"{index}.{at}": block
+        for at, block in enumerate(step.blocks)
+        if isinstance(block, Quiz | NumberQuestion)
+    }
+
+
+def asked_at(lesson: Lesson, index: int) -> dict[str, Asked]:
+    """What a class votes on in a step, by item: its prediction, and its questions."""
+    found = prediction_at(lesson, index)
+    predicted: dict[str, Asked] = {} if found is None else {str(found[0]): found[1]}
+    return {**predicted, **questions_of(lesson.steps[index], index)}
+
+
 def distribution(
-    prediction: Prediction,
+    block: Asked,
     lesson: str,
-    step: int,
+    item: str,
     students: Sequence[Progress],
+    *,
     again: bool = False,
+    here: Sequence[bool] = (),
+    vote: Vote | None = None,
 ) -> Distribution:
-    """Count the answers of the class.
+    """Count the answers of the class: of each student the first one in time.
 
     Args:
-        step: index of the step that asks for the prediction.
+        item: of the question; see `Given.item`.
         students: progress of all students.
         again: whether to count the second answers, after a discussion, instead of the first ones.
+        here: whether each student is here; everybody, if it is empty.
+        vote: on the question, if it was put to the class.
     """
-    notes, key = [_notes(each, lesson) for each in students], str(step)
-    lost = sum((second_key(key) if again else key) in each.unknown for each in notes)
-    answers = [(each.second if again else each.answers).get(key) for each in notes]
-    given = [answer for answer in answers if answer is not None]
-    options = range(len(prediction.options)) if isinstance(prediction, Choice) else ()
+    notes = [_notes(each, lesson) for each in students]
+    here = here or [True] * len(notes)
+    found = [counted(each, item, vote, again) for each in notes]
+    given = [each for each in found if each is not None]
+    marked = second_key(item) if again else item
+    both = list(zip(notes, found, strict=True))
+    lost = sum(marked in each.unknown and one is not None for each, one in both)
+    answers = [each.answer for each in given if each.answer is not None]
+    options = range(len(block.options)) if isinstance(block, Choice | Quiz) else ()
+    is_here = [one for one, present in zip(found, here, strict=True) if present]
     return Distribution(
-        counts=tuple(sum(answer.option == option for answer in given) for option in options),
-        sketches=tuple(answer for answer in given if answer.times),
-        skipped=sum(answer.skipped for answer in given) - lost,
-        waiting=len(answers) - len(given),
+        counts=tuple(sum(answer.option == option for answer in answers) for option in options),
+        sketches=tuple(answer for answer in answers if answer.times),
+        skipped=sum(answer.skipped for answer in answers) - lost,
+        waiting=sum(one is None for one in is_here),
         unknown=lost,
+        numbers=tuple(each.number for each in given if each.number is not None),
+        here=len(is_here),
+        away=len(notes) - len(is_here),
+        answered=sum(one is not None and not is_skipped(one) for one in is_here),
+        late=sum(
+            one is None and any(is_late(vote, each) for each in given_to(of, item))
+            for of, one in both
+        ),
+    )
+
+
+def have_all_answered(students: Sequence[Progress], votes: Iterable[Vote]) -> bool:
+    """Whether each student has answered, or skipped, all questions of some votes."""
+    return bool(students) and all(
+        counted(_notes(each, vote.lesson), vote.item, vote, vote.again) is not None
+        for vote in votes
+        for each in students
     )
 
 

@@ -117,9 +117,7 @@ class Exporter:
 
         def start(lab: Lab) -> None:
             run = lab.lessons
-            self._submit(
-                name, lab.words, report_file, run.course, run.progress, code, datetime.now()
-            )
+            self._submit(name, lab.words, report_file, run.course, run.told, code, datetime.now())
 
         self._want(start)
 

@@ -46,11 +46,13 @@ class Command:
     Attributes:
         from_teacher: whether it comes from a teacher; such commands are applied even while the lab
             is frozen.
+        is_answer: whether it answers a question, which is possible even while the lab is frozen.
         lets_time_run: whether it lets time run, and so is refused while a prediction is pending.
     """
 
     __slots__ = ()
     from_teacher: ClassVar[bool] = False
+    is_answer: ClassVar[bool] = False
     lets_time_run: ClassVar[bool] = False
 
     def apply(self, lab: Lab) -> None:
@@ -208,7 +210,7 @@ class Lab:
 
     def _refusal(self, command: Command) -> Message | None:
         """Why a user's command is refused now; None if it is not."""
-        if self.frozen:
+        if self.frozen and not command.is_answer:
             return Message("class.frozen")
         return self.locked if command.lets_time_run else None
 

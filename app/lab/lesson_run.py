@@ -11,7 +11,7 @@ from msgspec.structs import replace
 
 from onpath.app.lab.answers import kept_answer
 from onpath.app.lab.lesson_record import Beginning, Trace
-from onpath.app.lab.lesson_state import LessonState
+from onpath.app.lab.lesson_state import UNSENT, LessonState, Sent
 from onpath.app.lab.script_player import ScriptPlayer
 from onpath.app.lab.setups.capture import capture
 from onpath.app.lab.setups.setup import Setup
@@ -160,6 +160,8 @@ class LessonRun(LessonState):
     def finish(self) -> None:
         """Show the end of the open lesson, which belongs to its last step; a test is handed in."""
         if self.lesson is not None:
+            if not self.may_go(1):
+                self.check_within(self.lesson.name, len(self.lesson.steps))
             self.check_within(self.lesson.name, len(self.lesson.steps) - 1)
             self.note(**({"handed_in": True} if self.is_test else {}))
             self.progress = replace(self.progress, ended=True)
@@ -196,17 +198,13 @@ class LessonRun(LessonState):
         if self.lesson is not None:
             self._go(self.index, lab)
 
-    def predict(self, answer: Answer, simulation: Simulation) -> None:
+    def predict(self, answer: Answer, simulation: Simulation, sent: Sent = UNSENT) -> None:
         """Submit a prediction.
 
         Raises:
-            ValueError: no prediction is pending, or the answer is invalid.
+            ValueError: nothing is to be predicted, or the answer is invalid.
         """
-        found = self.prediction()
-        if found is None:
-            raise CodedError("lesson.nothing_to_predict")
-        _, prediction = found
-        self.note_answer(kept_answer(prediction, answer))
+        self.note_answer(kept_answer(self.predicted(sent)[2], answer), sent)
         self._lock(simulation)
         self.version += 1
 

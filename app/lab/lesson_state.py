@@ -5,6 +5,9 @@ It does not depend on a lab; `app.lab.lesson_run` plays the steps on one.
 
 from __future__ import annotations
 
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 from msgspec.structs import replace
@@ -13,9 +16,9 @@ from onpath.app.lab.answers import kept_number, kept_text
 from onpath.lessons.adaptive.branches import is_shown
 from onpath.lessons.course import Course
 from onpath.lessons.kept.known_choices import mark_of, marks_of
-from onpath.lessons.kept.option_keys import second_key
+from onpath.lessons.kept.option_keys import second_key, why_key
 from onpath.lessons.pace import Pace
-from onpath.lessons.progress import Answer, Notes, Progress
+from onpath.lessons.progress import Answer, Given, Notes, Progress, given_to
 from onpath.lessons.routes import Route
 from onpath.lessons.schema import (
     Block,
@@ -26,8 +29,29 @@ from onpath.lessons.schema import (
     Quiz,
     Step,
 )
+from onpath.lessons.votes import Vote
 from onpath.lessons.words import Words
 from onpath.models.errors import CodedError, Message
+
+MOST_ROUNDS = 1000  # questions that were asked again, in one lesson
+MOST_SENT = 20  # answers of which a page hears that they have been stored
+
+
+@dataclass(frozen=True, slots=True)
+class Sent:
+    """Where an answer belongs, as its browser says.
+
+    Attributes:
+        lesson, step: what was asked; without a lesson, the open step is meant.
+        key: see `Given`.
+    """
+
+    lesson: str = ""
+    step: int = 0
+    key: str = ""
+
+
+UNSENT = Sent()
 
 
 class LessonState:
@@ -39,16 +63,31 @@ class LessonState:
         words: texts in the student's language.
         version: changes whenever the page must be redrawn.
         pace: the steps within which the teacher lets the student go; None if anywhere.
+        votes: what the class is asked now. Until they are closed, nobody learns what is right.
+        stored: the progress that is in the database; None if nobody stores it.
+        answers_given: how many answers were given here so far.
+        settled: keys of answers that cannot be taken, and so need not be sent again.
+        clock: seconds since 1970.
     """
 
     def __init__(
-        self, course: Course, progress: Progress | None = None, words: Words | None = None
+        self,
+        course: Course,
+        progress: Progress | None = None,
+        words: Words | None = None,
+        clock: Callable[[], float] = time.time,
     ) -> None:
         self.course = course
         self.progress = progress or Progress()
         self.words = words or Words(self.progress.language)
         self.version = 0
         self.pace: Pace | None = None
+        self.votes: tuple[Vote, ...] = ()
+        self.stored: Progress | None = None
+        self.settled: tuple[str, ...] = ()
+        self.answers_given = 0
+        self.clock = clock
+        self._told_of = self.progress, _latest_keys(self.progress)
 
     @property
     def lesson(self) -> Lesson | None:
@@ -138,13 +177,43 @@ class LessonState:
         self.pace = pace
         self.version += 1
 
+    def set_votes(self, votes: tuple[Vote, ...]) -> None:
+        """The class is asked something else now, or nothing."""
+        self.votes = votes
+        self.version += 1
+
+    def is_voted_on(self, item: str, lesson: str = "") -> bool:
+        """Whether the class is asked a question now, by default one of the open lesson."""
+        lesson = lesson or self.progress.lesson
+        return any((each.lesson, each.item) == (lesson, item) for each in self.votes)
+
+    @property
+    def told(self) -> Progress:
+        """The progress without what the class is asked now, which a report would judge."""
+        notes = dict(self.progress.notes)
+        for name, known in notes.items():
+            if asked := {each.item for each in self.votes if each.lesson == name}:
+                left = {
+                    kind: {k: v for k, v in getattr(known, kind).items() if k not in asked}
+                    for kind in ("answers", "second", "truths", "quiz", "numbers")
+                }
+                notes[name] = replace(known, **left)
+        return replace(self.progress, notes=notes)
+
+    def _is_beyond_a_vote(self, name: str, index: int) -> bool:
+        return any(each.lesson == name and index > each.step for each in self.votes)
+
     def may_go(self, by: int) -> bool:
         """Whether the teacher lets the student go `by` steps from the open one."""
         name, index = self.beside(by)
+        if self._is_beyond_a_vote(name, index + (by > 0 and self.at_end)):
+            return False
         return self.pace is None or self.pace.holds(name, index)
 
     def check_within(self, name: str, index: int) -> None:
         """Raise ValueError if the teacher does not let the student go to a step."""
+        if self._is_beyond_a_vote(name, index):
+            raise CodedError("class.vote_is_open")
         pace = self.pace
         if pace is not None and not pace.holds(name, index):
             raise CodedError("lesson.out_of_pace", first=pace.first + 1, last=pace.last + 1)
@@ -197,7 +266,7 @@ class LessonState:
             return
         key, notes = found[0], self.notes
         self.note(
-            asked_again=tuple(dict.fromkeys((*notes.asked_again, key))),
+            asked_again=(*notes.asked_again, key)[-MOST_ROUNDS:],
             second={k: answer for k, answer in notes.second.items() if k != key},
             unknown=tuple(each for each in notes.unknown if each != second_key(key)),
         )
@@ -213,11 +282,19 @@ class LessonState:
         return self.progress.lesson in self.course.tests
 
     @property
+    def is_voting(self) -> bool:
+        """Whether the class is asked for the open step's prediction now."""
+        found = self.prediction()
+        return found is not None and self.is_voted_on(found[0])
+
+    @property
     def locked(self) -> Message | None:
         """Why time must not run (a prediction is pending, or a test is open); None if it may."""
         if self.is_test and not self.notes.handed_in:
             return Message("test.locked")
-        return Message("lesson.locked") if self.waits else None
+        if self.waits:
+            return Message("lesson.locked")
+        return Message("class.vote_is_open") if self.is_voting else None
 
     def check_unlocked(self) -> None:
         """Raise ValueError if time must not run; see `locked`."""
@@ -225,6 +302,8 @@ class LessonState:
             raise CodedError("test.locked")
         if self.waits:
             raise CodedError("lesson.locked")
+        if self.is_voting:
+            raise CodedError("class.vote_is_open")
 
     def has_played(self) -> bool:
         """Whether the open step's demonstration has been played, now or earlier."""
@@ -244,56 +323,109 @@ class LessonState:
             raise CodedError("lesson.no_more_hints")
         self.note(hints={**self.notes.hints, task: shown})
 
-    def answer_quiz(self, block: int, option: int) -> None:
-        """Choose an option of a quiz, given its index among the open step's blocks.
+    def answer_quiz(self, block: int, option: int, sent: Sent = UNSENT) -> None:
+        """Choose an option of a quiz, given its index among its step's blocks.
 
         Raises:
             ValueError: there is no such quiz or option, or the test has been handed in.
         """
-        if self.notes.handed_in:
+        lesson, index = self._asked(sent)
+        if self._notes_on(lesson).handed_in:
             raise CodedError("test.over")
-        quiz = self._block(block)
+        quiz = _block(lesson, index, block)
         if not isinstance(quiz, Quiz) or option not in range(len(quiz.options)):
             raise CodedError("lesson.no_such_option")
-        assert self.lesson is not None
-        key = f"{self.index}.{block}"
-        before = None if key in self.notes.unknown else self.notes.quiz.get(key)
-        self._note_second(key, before, option)
-        self._note_chosen(key, mark_of(self.lesson, key, option), "quiz", option)
+        item = f"{index}.{block}"
+        marks = mark_of(lesson, item, option)
+        given = Given(item, answer=Answer(option=option), mark=marks.get(item, ""))
+        notes = self._notes_on(lesson)
+        before = None if item in notes.unknown else notes.quiz.get(item)
+        if self._give(lesson, given, sent):
+            self._note_second(lesson, item, before, option)
+            self._note_chosen(lesson, item, marks, "quiz", option)
 
-    def answer_number(self, block: int, given: float) -> None:
-        """Answer a question with a number; `block` is its index among the open step's blocks.
+    def answer_number(self, block: int, given: float, sent: Sent = UNSENT) -> None:
+        """Answer a question with a number; `block` is its index among its step's blocks.
 
         Raises:
             ValueError: there is no such question, or the answer is not a number.
         """
-        if not isinstance(self._block(block), NumberQuestion):
+        lesson, index = self._asked(sent)
+        if not isinstance(_block(lesson, index, block), NumberQuestion):
             raise CodedError("lesson.no_such_option")
-        number, key = kept_number(given), f"{self.index}.{block}"
-        self._note_second(key, self.notes.numbers.get(key), number)
-        self.note(numbers={**self.notes.numbers, key: number})
+        item, number = f"{index}.{block}", kept_number(given)
+        if self._give(lesson, Given(item, number=number), sent):
+            numbers = self._notes_on(lesson).numbers
+            self._note_second(lesson, item, numbers.get(item), number)
+            self._note_on(lesson, numbers={**numbers, item: number})
 
-    def answer_in_words(self, block: int, typed: str) -> None:
+    def answer_in_words(self, block: int, typed: str, sent: Sent = UNSENT) -> None:
         """Answer an open question, or take the answer back with an empty one.
 
         Raises:
             ValueError: there is no such question.
         """
-        if not isinstance(self._block(block), OpenQuestion):
+        lesson, index = self._asked(sent)
+        if not isinstance(_block(lesson, index, block), OpenQuestion):
             raise CodedError("lesson.no_such_option")
-        key, text = f"{self.index}.{block}", kept_text(typed)
-        others = {k: kept for k, kept in self.notes.written.items() if k != key}
-        self.note(written={**others, **({key: text} if text else {})})
+        item, text = f"{index}.{block}", kept_text(typed)
+        if self._give(lesson, Given(item, text=text), sent):
+            written = self._notes_on(lesson).written
+            others = {k: kept for k, kept in written.items() if k != item}
+            self._note_on(lesson, written={**others, **({item: text} if text else {})})
 
-    def _note_second(self, key: str, before: float | None, given: float) -> None:
-        """Note that a question of the open step is answered again, and otherwise than before."""
-        if before not in (None, given) and not self.is_test:
-            self.note(twice=tuple(dict.fromkeys((*self.notes.twice, key))))
+    def _note_second(self, lesson: Lesson, item: str, before: float | None, given: float) -> None:
+        """Note that a question is answered again, and otherwise than before."""
+        if before not in (None, given) and lesson.name not in self.course.tests:
+            twice = self._notes_on(lesson).twice
+            self._note_on(lesson, twice=tuple(dict.fromkeys((*twice, item))))
 
-    def _block(self, block: int) -> Block | None:
-        """A block of the open step, or None."""
-        step = self.step
-        return step.blocks[block] if step and block in range(len(step.blocks)) else None
+    def settle(self, key: str) -> None:
+        """An answer cannot be taken: its browser need not send it again."""
+        self.settled = (*self.settled, key)[-MOST_SENT:]
+
+    @property
+    def sent(self) -> tuple[str, ...]:
+        """Keys of the latest answers that browsers need not send again."""
+        progress = self.progress if self.stored is None else self.stored
+        if self._told_of[0] is not progress:
+            self._told_of = progress, _latest_keys(progress)
+        return (*self._told_of[1], *self.settled)
+
+    def _asked(self, sent: Sent) -> tuple[Lesson, int]:
+        """The lesson and the step that an answer belongs to: what was open when it was given.
+
+        Raises:
+            ValueError: there is no such step.
+        """
+        if not sent.lesson and self.lesson is not None:
+            return self.lesson, self.index
+        if not self.course.has_steps(sent.lesson, sent.step, sent.step):
+            raise CodedError("lesson.no_such_option")
+        return self.course.lesson(sent.lesson, self.progress.language), sent.step
+
+    def _give(self, lesson: Lesson, given: Given, sent: Sent) -> bool:
+        """Keep one more answer to an item; returns False if it was here before.
+
+        When an item is asked, the first answer is kept, and of changes of it the last one; when it
+        is asked again, the first answer.
+        """
+        notes = self._notes_on(lesson)
+        known = [each for each in notes.given if each.key]
+        if sent.key and any(each.key == sent.key for each in known):
+            return False
+        asked = notes.asked_again.count(given.item)
+        new = replace(given, time=round(self.clock(), 3), round=asked, key=sent.key)
+        same = (*given_to(notes, given.item), new)
+        others = (each for each in notes.given if each.item != given.item)
+        first, again = [each for each in same if not each.round], [e for e in same if e.round]
+        latest = [each for each in again if each.round == again[-1].round]
+        kept = (*first[:1], *first[1:][-1:], *latest[:1])
+        self._note_on(lesson, given=(*others, *kept))
+        if sent.key and new not in kept:
+            self.settle(sent.key)
+        self.answers_given += 1
+        return True
 
     def set_language(self, language: str) -> None:
         """Set the language of texts and interface."""
@@ -301,13 +433,40 @@ class LessonState:
         self.progress = replace(self.progress, language=self.words.language)
         self.version += 1
 
-    def note_answer(self, answer: Answer) -> None:
-        """Store the answer to the open step's prediction, the second one if it is asked again."""
-        found, lesson = self.prediction(), self.lesson
-        assert found is not None and lesson is not None
-        key, again = found[0], found[0] in self.notes.asked_again
-        marks = marks_of(lesson, key, answer, again)
-        self._note_chosen(key, marks, "second" if again else "answers", answer)
+    def note_answer(self, answer: Answer, sent: Sent = UNSENT) -> None:
+        """Store an answer to a prediction, the second one if it is asked again.
+
+        One that comes after another answer to the same question, such as a changed one, is only
+        kept among `Notes.given`. Who has skipped a prediction may still make it.
+        """
+        lesson, item, _ = self.predicted(sent)
+        again = item in self._notes_on(lesson).asked_again
+        marks = marks_of(lesson, item, answer, again)
+        marked = second_key(item) if again else item
+        given = Given(
+            item,
+            answer=answer,
+            mark=marks.get(marked, ""),
+            why_mark=marks.get(why_key(marked), ""),
+        )
+        kind = "second" if again else "answers"
+        before = getattr(self._notes_on(lesson), kind).get(item)
+        if self._give(lesson, given, sent) and (before is None or before.skipped):
+            self._note_chosen(lesson, item, marks, kind, answer)
+
+    def predicted(self, sent: Sent = UNSENT) -> tuple[Lesson, str, Prediction]:
+        """Lesson, key and prediction that an answer belongs to: what it names, or the open step's.
+
+        Raises:
+            ValueError: nothing is to be predicted there.
+        """
+        if sent.lesson:
+            lesson, index = self._asked(sent)
+            for prediction in lesson.steps[index].predictions():
+                return lesson, str(index), prediction
+        elif self.lesson is not None and (found := self.prediction()) is not None:
+            return self.lesson, *found
+        raise CodedError("lesson.nothing_to_predict")
 
     def is_unknown(self, key: str = "") -> bool:
         """Whether a stored choice can no longer be identified, because the lesson has changed.
@@ -320,11 +479,14 @@ class LessonState:
         noted = second_key(key) if key in notes.asked_again else key
         return noted in notes.unknown
 
-    def _note_chosen(self, key: str, marks: dict[str, str], kind: str, chosen: object) -> None:
+    def _note_chosen(
+        self, lesson: Lesson, key: str, marks: dict[str, str], kind: str, chosen: object
+    ) -> None:
         """Store a choice in a field of the notes, with the marks that identify it later."""
-        notes = self.notes
+        notes = self._notes_on(lesson)
         noted = second_key(key) if kind == "second" else key
-        self.note(
+        self._note_on(
+            lesson,
             **{kind: {**getattr(notes, kind), key: chosen}},
             marks={**notes.marks, **marks},
             unknown=tuple(each for each in notes.unknown if each != noted),
@@ -332,6 +494,26 @@ class LessonState:
 
     def note(self, **changes: Any) -> None:
         """Change the saved notes on the open lesson."""
-        notes = {**self.progress.notes, self.progress.lesson: replace(self.notes, **changes)}
-        self.progress = replace(self.progress, notes=notes)
+        self._change(self.progress.lesson, changes)
+
+    def _notes_on(self, lesson: Lesson) -> Notes:
+        return self.progress.notes.get(lesson.name, Notes())
+
+    def _note_on(self, lesson: Lesson, **changes: Any) -> None:
+        self._change(lesson.name, changes)
+
+    def _change(self, name: str, changes: dict[str, Any]) -> None:
+        notes = replace(self.progress.notes.get(name, Notes()), **changes)
+        self.progress = replace(self.progress, notes={**self.progress.notes, name: notes})
         self.version += 1
+
+
+def _latest_keys(progress: Progress) -> tuple[str, ...]:
+    given = [each for notes in progress.notes.values() for each in notes.given if each.key]
+    return tuple(each.key for each in sorted(given, key=lambda each: each.time)[-MOST_SENT:])
+
+
+def _block(lesson: Lesson, index: int, block: int) -> Block | None:
+    """A block of a step, or None."""
+    blocks = lesson.steps[index].blocks
+    return blocks[block] if block in range(len(blocks)) else None

@@ -14,6 +14,7 @@ _PLAIN = (
         "answer.check",
         "answer.keep",
     ),
+    *("answer.sending", "answer.sent"),
     *("lesson.committed", "lesson.drawn", "lesson.skipped", "lesson.passed", "report.right"),
     "lesson.happened",
     *("site.draw_first", "site.skipped", "site.again", "site.link_only_lab", "site.symbols"),

@@ -32,8 +32,12 @@ class Keeper(Protocol):
     @property
     def generation(self) -> int: ...
 
-    def submit(self, code: str, make_state: Callable[[], LabState]) -> None:
+    def submit(self, code: str, make_state: Callable[[], LabState], at_once: bool = False) -> int:
         """Save the state that a function returns; it is called in another thread."""
+        ...
+
+    def written(self, code: str) -> int:
+        """Number of the latest state of a lab that is saved, as `submit` returned it."""
         ...
 
     def unsaved(self, code: str) -> str:
@@ -44,7 +48,8 @@ class Keeper(Protocol):
 class StateObserver:
     """Watches a lab, and submits its state when it has changed, at most once a second.
 
-    The user is told when the lab cannot be saved, and when it is saved again.
+    An answer is submitted at once, and the lessons learn when it is saved. The user is told when
+    the lab cannot be saved, and when it is saved again.
 
     Args:
         code: code of the lab.
@@ -55,13 +60,18 @@ class StateObserver:
         self._code, self._keeper = code, keeper
         self._seen = NEW if lab is None else _now(lab)
         self._generation = keeper.generation
-        self._frames = 0
+        self._frames = self._answers = 0
+        self._awaited: tuple[int, Progress] | None = None  # a state that is being saved
+        if lab is not None:
+            lab.lessons.stored, self._answers = lab.lessons.progress, lab.lessons.answers_given
 
     def __call__(self, lab: Lab) -> None:
         """Called in every frame; see `Lab.watch`."""
         self._frames += 1
-        if self._frames % SAVE_INTERVAL == 0:
+        if self._frames % SAVE_INTERVAL == 0 or lab.lessons.answers_given != self._answers:
             self.check(lab)
+        if self._awaited is not None and self._keeper.written(self._code) >= self._awaited[0]:
+            lab.lessons.stored, self._awaited = self._awaited[1], None
 
     def check(self, lab: Lab) -> None:
         """Submit the state if it has changed. Nobody else may change the lab meanwhile."""
@@ -71,15 +81,17 @@ class StateObserver:
             if now != NEW:
                 lab.remark(lab.words("keep.anew"))
         if now != self._seen:
-            self._seen = now
-            self._keeper.submit(self._code, lambda: _state(*now))
+            self._seen, answers = now, lab.lessons.answers_given
+            is_new, self._answers = answers != self._answers, answers
+            number = self._keeper.submit(self._code, lambda: _state(*now), at_once=is_new)
+            self._awaited = number, now[1]
         if (unsaved := self._keeper.unsaved(self._code)) != lab.unsaved:
             lab.unsaved = unsaved
             if not unsaved:
                 lab.remark(lab.words("keep.again"))
 
 
-def keep(lab: Lab, submit: Callable[[Callable[[], LabState]], None]) -> None:
+def keep(lab: Lab, submit: Callable[[Callable[[], LabState]], object]) -> None:
     """Submit the state even if it has not changed. Call it on the simulation thread."""
     now = _now(lab)
     submit(lambda: _state(*now))

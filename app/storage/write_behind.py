@@ -60,20 +60,39 @@ class WriteBehind:
         self._current: tuple[str, float] | None = None  # the lab being written, and since when
         self._lock, self._writing = threading.Lock(), threading.Lock()
         self._wanted, self._closing = threading.Event(), threading.Event()
+        self._hurry = threading.Event()  # ends the interval
+        self._hurried: set[str] = set()  # codes of labs that are written first
+        self._tickets, self._written = dict[str, int](), dict[str, int]()
         self.warning = ""
         self._thread = threading.Thread(target=self._run, name="keeper", daemon=True)
         self._thread.start()
 
-    def submit(self, code: str, make_state: Callable[[], dict[str, Any]]) -> None:
+    def submit(
+        self, code: str, make_state: Callable[[], dict[str, Any]], at_once: bool = False
+    ) -> int:
         """Save the state that `make_state` returns. Thread-safe, and does not block.
 
         Args:
             make_state: called in the background thread, or never if a later one replaces it; must
                 not read anything that other threads modify.
+            at_once: whether somebody waits until it is saved.
+
+        Returns:
+            Its number; see `written`.
         """
         with self._lock:
             self._pending[code] = make_state
+            number = self._tickets[code] = self._tickets.get(code, 0) + 1
+            if at_once:
+                self._hurried.add(code)
         self._wanted.set()
+        if at_once:
+            self._hurry.set()
+        return number
+
+    def written(self, code: str) -> int:
+        """Number of the latest state of a lab that is saved; 0 if none is."""
+        return self._written.get(code, 0)
 
     def unsaved(self, code: str) -> str:
         """Why the latest state of a lab is not saved, or will not outlive the process.
@@ -106,8 +125,8 @@ class WriteBehind:
             NotKept: another write takes too long; the state stays pending.
         """
         with held(self._writing, TURN_WAIT), self._lock:
-            self._pending.pop(code, None)
-            self._failed.pop(code, None)
+            for known in (self._pending, self._failed, self._tickets, self._written):
+                known.pop(code, None)
 
     def flush(self, code: str) -> bool:
         """Write the pending state of one lab, if any, in the caller's thread.
@@ -131,19 +150,23 @@ class WriteBehind:
         """Write all pending states, and end the thread."""
         self._closing.set()
         self._wanted.set()
+        self._hurry.set()
         self._thread.join(FLUSH)
 
     def _run(self) -> None:
         while not self._closing.is_set():
             self._wanted.wait()
             self._wanted.clear()
+            self._hurry.clear()
             self._write_all()
-            self._closing.wait(self._interval)
+            if not self._closing.is_set():
+                self._hurry.wait(self._interval)
         self._write_all()
 
     def _write_all(self) -> None:
         with self._lock:
-            codes = list(self._pending)
+            codes = sorted(self._pending, key=lambda code: code not in self._hurried)
+            self._hurried.clear()
         failed = ""
         for code in codes:
             with self._writing:
@@ -162,13 +185,15 @@ class WriteBehind:
             if make_state is None:
                 return ""
             self._current = code, time.monotonic()
-        return self._write(code, make_state)
+            number = self._tickets.get(code, 0)
+        return self._write(code, make_state, number)
 
-    def _write(self, code: str, make_state: Callable[[], dict[str, Any]]) -> str:
+    def _write(self, code: str, make_state: Callable[[], dict[str, Any]], number: int) -> str:
         """Write a state. Returns why it failed and will be repeated, or ""."""
         failed = dict[str, str]()
         try:
             self._records.save(code, make_state())
+            self._written[code] = number
             return ""
         except NotKept as error:
             with self._lock:  # keeps a later state if there is one

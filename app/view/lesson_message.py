@@ -130,7 +130,8 @@ def _part(lesson: Lesson, block_index: int, run: LessonView) -> StepPart | None:
         )
     if isinstance(block, Quiz):
         unknown = run.is_unknown(key)
-        chosen = None if unknown or run.is_test else notes.quiz.get(key)
+        hidden = unknown or run.is_test or run.is_voted_on(key)
+        chosen = None if hidden else notes.quiz.get(key)
         told = chosen is not None and (key in notes.twice or block.options[chosen].right)
         return replace(
             part,
@@ -142,7 +143,7 @@ def _part(lesson: Lesson, block_index: int, run: LessonView) -> StepPart | None:
         )
     if not isinstance(block, NumberQuestion):
         return replace(part, told=key in notes.written)
-    given = notes.numbers.get(key)
+    given = None if run.is_voted_on(key) else notes.numbers.get(key)
     known = None if given is None else block.known(given)
     told = given is not None and (key in notes.twice or block.accepts(given))
     return replace(part, told=told, replies=() if known is None or told else (known,))
@@ -160,7 +161,7 @@ def _asked(lesson: Lesson, index: int, run: LessonView) -> StepPart:
         part_of(lesson, index, block_index, run.words),
         order=run.order(block) if isinstance(block, Choice) else (),
         lettered=True,
-        told=happened and answer is not None,
+        told=happened and answer is not None and not run.is_voting,
         remark=_remark(block, run),
         aside=aside if aside.strip() else None,
     )
@@ -203,6 +204,8 @@ def _block(part: StepPart, lesson: Lesson, index: int, run: LessonView) -> dict[
         data["links"] = [[msgspec.to_builtins(act) for act in link.actions] for link in block.links]
     elif isinstance(block, Task):
         data |= {"id": block.id, "best": block.best}
+    elif run.is_voted_on(f"{index}.{part.block_index}"):
+        data["voted"] = True
     return data
 
 
@@ -216,7 +219,7 @@ def _notes(run: LessonView) -> dict[str, Any]:
         for name in ("quiz", "numbers", "written")
     }
     here["quiz"] = {k: v for k, v in here["quiz"].items() if k not in notes.unknown}
-    truth = None if run.playing else run.truth
+    truth = None if run.playing or run.is_voting else run.truth
     return {
         "step": run.index,
         "seen": notes.seen,

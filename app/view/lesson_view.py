@@ -6,7 +6,7 @@ from onpath.app.common.templates import Markup
 from onpath.app.lab.lesson_state import LessonState
 from onpath.app.lab.snapshots.page_snapshot import LessonSnapshot
 from onpath.lessons.action_schema import StepSetup
-from onpath.lessons.adaptive.branches import is_shown
+from onpath.lessons.adaptive.branches import is_shown, question_before
 from onpath.lessons.adaptive.own_numbers import filled
 from onpath.lessons.course import Course
 from onpath.lessons.option_order import option_order
@@ -23,7 +23,7 @@ class LessonView(LessonState):
         student: code of the lab; decides the order of options.
 
     Attributes:
-        playing, verdicts, truth, pace, presenting: see `LessonSnapshot`.
+        playing, verdicts, truth, pace, votes, presenting: see `LessonSnapshot`.
     """
 
     def __init__(
@@ -33,7 +33,7 @@ class LessonView(LessonState):
         self._student = student
         self.version, self.playing = shown.version, shown.playing
         self.verdicts, self.truth = shown.verdicts, shown.truth
-        self.pace, self.presenting = shown.pace, shown.presenting
+        self.pace, self.votes, self.presenting = shown.pace, shown.votes, shown.presenting
 
     @property
     def shows_next(self) -> bool:
@@ -62,6 +62,9 @@ class LessonView(LessonState):
         if lesson is None or not is_shown(
             block.when, lesson.steps, self.notes, self.index, block_index
         ):
+            return None
+        asked = question_before(lesson.steps, self.index, block_index)
+        if block.when and asked is not None and self.is_voted_on(asked[0]):
             return None
         return filled(block.html, lesson.steps, self.index, self.notes, self.words)
 

@@ -86,4 +86,5 @@ def state_message(
         rows=row_data(snapshot.key.fields, is_level_set, words, guesses),
         laws=list(run.laws.values()),
         shared=snapshot.shared,
+        sent=list(snapshot.sent),
     )

@@ -158,6 +158,8 @@ answer-type_unit = Deine Zahl [{ $unit }]
 answer-type_words = Deine Antwort, mit eigenen Worten
 answer-check = Prüfen
 answer-keep = Antwort behalten
+answer-sending = Wird gesendet …
+answer-sent = Gesendet.
 sure-guessing = geraten
 sure-fairly = ziemlich sicher
 sure-certain = ganz sicher
@@ -328,7 +330,7 @@ class-back = Zurück für alle
 class-next_step = Weiter für alle: { $step }
 class-sent =
     { $count ->
-        [0] Noch ist niemand in der Klasse.
+        [0] Noch ist niemand da.
         [one] An 1 Person gesendet.
        *[other] An { $count } Personen gesendet.
     } Wer später beitritt, bekommt es.
@@ -337,10 +339,32 @@ class-standing_step = Wer beitritt, kommt zu dem Schritt, den du zuletzt geöffn
 class-push_end = Nicht mehr an alle senden, die beitreten
 class-predictions = Vorhersagen
 class-truth = Wirklichkeit zeigen
-class-no_prediction = In diesem Schritt gibt es nichts vorherzusagen.
+class-no_prediction = In diesem Schritt wird nichts gefragt.
 class-no_truth = Was wirklich geschieht, ist noch nicht bekannt: Es muss erst in einem Labor geschehen sein.
 class-predicted = Vorhersagen
-class-given = { $given } vorhergesagt, { $skipped } übersprungen, { $waiting } noch nicht
+class-given =
+    { $away ->
+        [0] { $given } von { $here } Anwesenden haben geantwortet.
+       *[other] { $given } von { $here } Anwesenden haben geantwortet ({ $away } sind weg).
+    }
+class-skipped = { $count } haben übersprungen.
+class-late =
+    { $count ->
+        [one] 1 Antwort kam nach dem Ende der Abstimmung und zählt nicht.
+       *[other] { $count } Antworten kamen nach dem Ende der Abstimmung und zählen nicht.
+    }
+class-closes = Die Abstimmung endet in { $seconds } s.
+class-closed = Die Abstimmung ist beendet.
+class-close_vote = Abstimmung beenden
+class-open_vote = Abstimmung wieder öffnen
+class-vote_is_open = Die Klasse stimmt noch ab. Es geht weiter, wenn deine Lehrkraft die Abstimmung beendet.
+class-other_numbers = andere Zahlen
+class-set_aside = Alle beiseitelassen, die weg sind ({ $count })
+class-set_aside_told =
+    { $count ->
+        [one] 1 Person bleibt beiseite, bis sie zurückkommt.
+       *[other] { $count } Personen bleiben beiseite, bis sie zurückkommen.
+    }
 class-record = Ergebnisse
 class-record_text = Eine Zeile für jede Person und jede Vorhersage, Aufgabe und Frage der begonnenen Lektionen. Sie enthält Spitznamen: Behandle sie als personenbezogene Daten.
 class-export = Ergebnisse der Klasse (XLSX)

@@ -160,6 +160,8 @@ answer-type_unit = Your number [{ $unit }]
 answer-type_words = Your answer, in your own words
 answer-check = Check
 answer-keep = Keep my answer
+answer-sending = Sending …
+answer-sent = Sent.
 sure-guessing = guessing
 sure-fairly = fairly sure
 sure-certain = certain
@@ -330,7 +332,7 @@ class-back = Back for all
 class-next_step = Next for all: { $step }
 class-sent =
     { $count ->
-        [0] Nobody is in the class yet.
+        [0] Nobody is here yet.
         [one] Sent to 1 student.
        *[other] Sent to { $count } students.
     } Students who join later will receive it.
@@ -339,10 +341,32 @@ class-standing_step = Students who join are taken to the step that you opened la
 class-push_end = Stop sending this to students who join
 class-predictions = Predictions
 class-truth = Show the truth
-class-no_prediction = There is nothing to predict in this step.
+class-no_prediction = Nothing is asked in this step.
 class-no_truth = What really happens is not known yet: it must first happen in a lab.
 class-predicted = predictions
-class-given = { $given } predicted, { $skipped } skipped, { $waiting } not yet
+class-given =
+    { $away ->
+        [0] { $given } of { $here } here have answered.
+       *[other] { $given } of { $here } here have answered ({ $away } away).
+    }
+class-skipped = { $count } skipped it.
+class-late =
+    { $count ->
+        [one] 1 answer came after the vote was closed, and does not count.
+       *[other] { $count } answers came after the vote was closed, and do not count.
+    }
+class-closes = The vote closes in { $seconds } s.
+class-closed = The vote is closed.
+class-close_vote = Close the vote
+class-open_vote = Open the vote again
+class-vote_is_open = The class is still voting. You can go on when your teacher closes the vote.
+class-other_numbers = other numbers
+class-set_aside = Set aside all who are away ({ $count })
+class-set_aside_told =
+    { $count ->
+        [one] 1 student is set aside until they come back.
+       *[other] { $count } students are set aside until they come back.
+    }
 class-record = Record
 class-record_text = One row for each student and each prediction, task and question of the lessons begun. It contains nicknames: treat it as personal data.
 class-export = Class record (XLSX)

@@ -12,8 +12,8 @@ from msgspec.structs import replace
 
 from onpath.lessons.course import Course
 from onpath.lessons.kept.option_keys import second_key, why_key
-from onpath.lessons.progress import Answer, Notes, Progress
-from onpath.lessons.schema import Choice, Lesson
+from onpath.lessons.progress import Answer, Given, Notes, Progress
+from onpath.lessons.schema import Choice, Lesson, Quiz, Sketch
 
 
 def marks_of(lesson: Lesson, key: str, answer: Answer, second: bool = False) -> dict[str, str]:
@@ -60,7 +60,8 @@ def known_notes(lesson: Lesson, notes: Notes) -> Notes:
     search.lost.update(key for key, index in quiz.items() if index is None)
     found = {key: index for key, index in quiz.items() if index is not None}
     unknown = tuple(sorted(search.lost))
-    return replace(notes, answers=answers, second=second, quiz=found, unknown=unknown)
+    given = tuple(map(search.given, notes.given))
+    return replace(notes, answers=answers, second=second, quiz=found, unknown=unknown, given=given)
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,31 +78,50 @@ class _Search:
 
     def index(self, key: str, mark_key: str, index: int) -> int | None:
         """The present index of a chosen option; None if it cannot be identified."""
-        keys, mark = self.lesson.keys.get(key), self.notes.marks.get(mark_key)
+        return self._index(key, self.notes.marks.get(mark_key, ""), index)
+
+    def answer(self, key: str, mark_key: str, answer: Answer) -> Answer:
+        """An answer with the present indices; without choice and curve if it is lost."""
+        marks = self.notes.marks
+        found = self._answer(key, marks.get(mark_key, ""), marks.get(why_key(mark_key), ""), answer)
+        if found.skipped and not answer.skipped:
+            self.lost.add(mark_key)
+        return found
+
+    def given(self, given: Given) -> Given:
+        """One of the answers that were given; see `answer`."""
+        if given.answer is None:
+            return given
+        found = self._answer(given.item, given.mark, given.why_mark, given.answer)
+        return given if found == given.answer else replace(given, answer=found)
+
+    def _index(self, key: str, mark: str, index: int) -> int | None:
+        keys = self.lesson.keys.get(key)
         if keys is None:
             return index  # nothing is asked there, so nothing is shown
         return keys.index(mark) if mark in keys else None
 
-    def answer(self, key: str, mark_key: str, answer: Answer) -> Answer:
-        """An answer with the present indices; without choice and curve if it is lost."""
+    def _answer(self, key: str, mark: str, why_mark: str, answer: Answer) -> Answer:
         if answer.skipped or key not in self.lesson.keys:
             return answer
         reason = answer.reason
         if reason is not None:
-            reason = self.index(why_key(key), why_key(mark_key), reason)
+            reason = self._index(why_key(key), why_mark, reason)
         if answer.times:
-            option, here = None, self._fits_a_curve(key, mark_key)
+            option, here = None, self._fits_a_curve(key, mark)
         else:
-            option = self.index(key, mark_key, answer.option or 0)
-            here = option is not None and isinstance(self._asked(key), Choice)
+            option = self._index(key, mark, answer.option or 0)
+            here = option is not None and isinstance(self._asked(key), Choice | Quiz)
         if here:
             return replace(answer, option=option, reason=reason)
-        self.lost.add(mark_key)
         return Answer(sure=answer.sure, why=answer.why)
 
-    def _fits_a_curve(self, key: str, mark_key: str) -> bool:
-        mark = self.notes.marks.get(mark_key)
-        return not isinstance(self._asked(key), Choice) and mark in (None, *self.lesson.keys[key])
+    def _fits_a_curve(self, key: str, mark: str) -> bool:
+        is_curve = isinstance(self._asked(key), Sketch)
+        return is_curve and mark in ("", *self.lesson.keys[key])
 
     def _asked(self, key: str) -> object:
-        return next(iter(self.lesson.steps[int(key)].predictions()), None)
+        step, _, block = key.partition(".")
+        if block:
+            return self.lesson.steps[int(step)].blocks[int(block)]
+        return next(iter(self.lesson.steps[int(step)].predictions()), None)

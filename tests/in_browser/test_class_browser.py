@@ -16,15 +16,17 @@ from playwright.sync_api import Browser, FloatRect, Locator, Page
 from onpath.app.classroom.classroom import Classroom, Display
 from onpath.app.classroom.results import prediction_at
 from onpath.app.lab import commands as c
+from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
 from onpath.app.server.server_options import ServerOptions
 from onpath.app.viser_adapter.addresses import class_address
+from onpath.lessons.progress import given_to
 from onpath.lessons.schema import Choice
 from tests.support.axe import violations
 from tests.support.browser import Tab, wait_for
 
-LESSON = "01-path-or-timetable"
+LESSON, CHOICE = "01-path-or-timetable", 4
 NAMES = ("Ada", "<img src=x onerror=1>")
 SMALLEST = """() => Math.min(...[...document.querySelectorAll(".op-class *")]
     .filter(each => each.checkVisibility())
@@ -130,7 +132,7 @@ def test_a_class_joins_is_frozen_led_and_watched_and_its_record_comes_down(tabs:
     tabs.open("Predictions")
     answers = teacher.get_by_role("tabpanel", name="Predictions")
     curves = answers.locator("svg:has(text) polyline")
-    teacher.get_by_text("2 predicted").wait_for()
+    teacher.get_by_text("2 of 2 here have answered").wait_for()
     assert curves.count() == 0  # nobody follows the majority
     teacher.get_by_role("switch", name="Show the answers").click()
     wait_for(lambda: curves.count() == 2)
@@ -155,6 +157,25 @@ def test_a_class_joins_is_frozen_led_and_watched_and_its_record_comes_down(tabs:
     question.get_by_role("button", name="No").click()
     question.wait_for(state="detached")
     assert len(tabs.room.members()) == 2
+
+
+def test_an_answer_that_got_lost_is_sent_by_the_next_page_and_counts_once(tabs: Class) -> None:
+    student, room = tabs.students[0], tabs.room
+    room.push(TakeStep(LESSON, CHOICE), [str(CHOICE)])
+    option = student.page.get_by_role("radio").first
+    option.wait_for()
+    option.check()
+    student.page.evaluate("onpathLab.send = () => {}")  # whatever it says gets lost
+    student.page.get_by_role("button", name="Commit to this prediction").click()
+    student.page.get_by_text("Sending …").wait_for()
+    assert student.lab.lessons.answer() is None
+    student.page.reload()
+    student.page.get_by_text("Sent.").wait_for()
+    run = student.lab.lessons
+    assert len(given_to(run.notes, str(CHOICE))) == 1 and run.is_voting
+    assert student.page.get_by_role("button", name=re.compile("^Next")).count() == 0
+    room.close(room.open_votes)
+    student.page.get_by_role("button", name=re.compile("^Next")).first.wait_for()
 
 
 PROJECTORS = [(1280, 800), (1366, 768), (1920, 1080)]

@@ -114,7 +114,7 @@ def test_the_records_of_an_older_version_say_so(tmp_path: Path) -> None:
     results = [row["result"] for row in rows]
     assert results.count("unknown") == 2 and "skipped" not in results
     block = course.lesson(NAME, "en").steps[3].predictions()[0]
-    found = distribution(block, NAME, 3, [lab.lessons.progress])
+    found = distribution(block, NAME, "3", [lab.lessons.progress])
     assert (found.counts, found.skipped, found.waiting, found.unknown) == ((0, 0), 0, 0, 1)
     assert ENGLISH("class.unknown", count=1) in given_line(found, ENGLISH)
 

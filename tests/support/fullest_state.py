@@ -11,7 +11,16 @@ from onpath.app.lab.setups.stored import to_data
 from onpath.app.lab.sketches import MOST_POINTS as SKETCHED
 from onpath.lessons.course import Course
 from onpath.lessons.kept.option_keys import second_key
-from onpath.lessons.progress import MOST_POINTS, MOST_TEXT, SURENESS, Answer, Notes, Progress, Truth
+from onpath.lessons.progress import (
+    MOST_POINTS,
+    MOST_TEXT,
+    SURENESS,
+    Answer,
+    Given,
+    Notes,
+    Progress,
+    Truth,
+)
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import (
     Lesson,
@@ -74,6 +83,22 @@ def _notes(lesson: Lesson) -> Notes:
         marks=dict.fromkeys(marks, "x" * 40),
         unknown=tuple(marks),
         handed_in=True,
+        given=tuple(_given(key, answer) for key, answer in answers.items() for _ in range(3))
+        + tuple(_given(key) for kind in (Quiz, NumberQuestion) for key in _blocks(lesson, kind))
+        + tuple(Given(key, text=WORDS) for key in _blocks(lesson, OpenQuestion) for _ in range(2)),
+    )
+
+
+def _given(key: str, answer: Answer | None = None) -> Given:
+    return Given(
+        item=key,
+        time=LONG_NUMBER,
+        round=1000,
+        answer=answer,
+        number=LONG_NUMBER,
+        mark="x" * 40,
+        why_mark="x" * 40,
+        key="x" * 40,
     )
 
 

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from dataclasses import dataclass
 
 from onpath.app.classroom import class_html as page
 from onpath.app.classroom.classroom import MOST_MEMBERS, Display
 from onpath.app.classroom.concept_test_results import gain_view, item_distribution, question_at
 from onpath.app.classroom.results import (
+    Asked,
     Distribution,
+    asked_at,
     distribution,
     is_asked_again,
-    prediction_at,
     truth_of,
 )
 from onpath.app.classroom.sketches_html import Picks
@@ -24,8 +26,17 @@ from onpath.lessons.concept_test.concept_test import TESTS
 from onpath.lessons.course import Course
 from onpath.lessons.kept.known_choices import of_today
 from onpath.lessons.progress import Progress, Truth
-from onpath.lessons.schema import Lesson
+from onpath.lessons.schema import Lesson, NumberQuestion, Prediction, Quiz
+from onpath.lessons.votes import vote_on
 from onpath.lessons.words import Words
+
+
+@dataclass(frozen=True, slots=True)
+class Students:
+    """The members of a class who count: their progress, and whether each is here."""
+
+    progress: list[Progress]
+    here: list[bool]
 
 
 class ClassAnswers:
@@ -48,18 +59,29 @@ class ClassAnswers:
 
     @property
     def _display(self) -> Display:
-        return self._teaching.classroom.display
+        classroom = self._teaching.classroom
+        return classroom.display.seen(classroom.now())
 
     def view(self, large: bool) -> str:
-        """The answers to the prediction of the displayed step, or to a question of a test."""
+        """The answers to what the displayed step asks, or to a question of a test."""
         steps = StepsForAll(self._course, self._words.language)
         name, index = steps.shown(self._display)
         lesson = self._course.lesson(name, self._words.language)
-        members = self._teaching.classroom.members().values()
-        students = [of_today(self._course, member.progress) for member in members]
+        members = list(self._teaching.classroom.present().values())
+        students = Students(
+            [of_today(self._course, member.progress) for member in members],
+            [member.connected for member in members],
+        )
         if name in self._course.tests:
-            return self._test(lesson, index, students, large)
-        return self._prediction(lesson, index, students, large)
+            return self._test(lesson, index, students.progress, large)
+        views = [
+            self._question(lesson, item, block, students, large)
+            if isinstance(block, Quiz | NumberQuestion)
+            else self._prediction(lesson, int(item), block, students, large)
+            for item, block in asked_at(lesson, index).items()
+        ]
+        title = step_label(lesson, index, self._words)
+        return "".join(views) or page.step_view(title, self._words("class.no_prediction"), large)
 
     def _test(self, test: Lesson, index: int, students: list[Progress], large: bool) -> str:
         """A question of the test, answered before and after the course, and the class's gain."""
@@ -74,36 +96,69 @@ class ClassAnswers:
             asked = page.hidden_view(question, rounds[TESTS.index(test.name)][1], words, large)
         return gain_view(test, students, display.revealed, words, large) + asked
 
-    def _prediction(self, lesson: Lesson, index: int, students: list[Progress], large: bool) -> str:
-        words, revealed = self._words, self._display.revealed
-        found = prediction_at(lesson, index)
-        if found is None:
-            title = step_label(lesson, index, words)
-            return page.step_view(title, words("class.no_prediction"), large)
-        at, block = found
-        truth = truth_of(lesson.name, at, [*students, self._teaching.progress()])
+    def _question(
+        self,
+        lesson: Lesson,
+        item: str,
+        block: Quiz | NumberQuestion,
+        students: Students,
+        large: bool,
+    ) -> str:
+        """The answers to a quiz or to a question for a number."""
+        words, display = self._words, self._display
+        found = self._counted(block, lesson.name, item, students)
+        if not display.shown:
+            view = page.hidden_view(block, found, words, large)
+        elif isinstance(block, Quiz):
+            view = page.choices_view(block, [("", found)], display.revealed, words, large)
+        else:
+            view = page.numbers_view(block, found, display.revealed, words, large)
+        return view + self._of_vote(lesson.name, item)
+
+    def _counted(
+        self, block: Asked, lesson: str, item: str, students: Students, again: bool = False
+    ) -> Distribution:
+        vote = vote_on(self._teaching.classroom.votes, lesson, item, again)
+        return distribution(
+            block, lesson, item, students.progress, again=again, here=students.here, vote=vote
+        )
+
+    def _of_vote(self, lesson: str, item: str, again: bool = False) -> str:
+        """Whether the vote is closing or closed."""
+        classroom = self._teaching.classroom
+        vote = vote_on(classroom.votes, lesson, item, again)
+        line = "" if vote is None else page.vote_line(vote, classroom.now(), self._words)
+        return page.remark(line) if line else ""
+
+    def _prediction(
+        self, lesson: Lesson, at: int, block: Prediction, students: Students, large: bool
+    ) -> str:
+        words, display, item = self._words, self._display, str(at)
+        revealed = display.revealed
+        truth = truth_of(lesson.name, at, [*students.progress, self._teaching.progress()])
         if truth is None and revealed:
             truth = self._truth_at(lesson, at)
-        counted = distribution(block, lesson.name, at, students)
-        second = None
-        if is_asked_again(lesson.name, at, students):
-            second = distribution(block, lesson.name, at, students, again=True)
-        if not self._display.shown:
-            return page.hidden_view(block, second or counted, words, large)
+        first = self._counted(block, lesson.name, item, students)
+        second, again = None, is_asked_again(lesson.name, at, students.progress)
+        if again:
+            second = self._counted(block, lesson.name, item, students, again=True)
+        closing = self._of_vote(lesson.name, item, again)
+        if not display.shown:
+            return page.hidden_view(block, second or first, words, large) + closing
         laws = lesson.laws_shown(at)
-        picks = self._picks(lesson.name, at, counted, second)
+        picks = self._picks(lesson.name, at, first, second)
         view = page.prediction_view(
-            block, counted, truth, revealed, words, large, laws=laws, second=second, picks=picks
+            block, first, truth, revealed, words, large, laws=laws, second=second, picks=picks
         )
-        missing = revealed and not counted.counts and truth is None
-        return view + page.remark(words("class.no_truth")) if missing else view
+        missing = revealed and not first.counts and truth is None
+        return view + (page.remark(words("class.no_truth")) if missing else "") + closing
 
     def _picks(
-        self, lesson: str, at: int, counted: Distribution, second: Distribution | None
+        self, lesson: str, at: int, first: Distribution, second: Distribution | None
     ) -> Picks:
         """The sketches that the teacher has picked; each gets its number when first seen."""
         chosen, numbers = self._teaching.chosen, []
-        for again, found in ((False, counted), (True, second)):
+        for again, found in ((False, first), (True, second)):
             if found is None:
                 continue
             seen = chosen.numbered.setdefault((lesson, at, again), [])

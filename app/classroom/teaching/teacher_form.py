@@ -18,6 +18,7 @@ from onpath.app.classroom import class_html as page
 from onpath.app.classroom.classroom import Member
 from onpath.app.classroom.gains_html import PAIRS, gains_view
 from onpath.app.classroom.pace_html import pace_view
+from onpath.app.classroom.results import asked_at
 from onpath.app.classroom.teaching.class_answers import ClassAnswers
 from onpath.app.classroom.teaching.lesson_labels import lesson_titles, step_label, step_titles
 from onpath.app.classroom.teaching.steps_for_all import StepsForAll
@@ -91,6 +92,7 @@ class TeacherForm:
         fields = [
             _html("code"),
             _html("table"),
+            *self._of_absent(),
             _choice("follow", words("class.follow"), {words("class.own_lab"): 0, **followable}),
             _note("still"),
             *self._of_member(),
@@ -104,6 +106,12 @@ class TeacherForm:
             _button("stop", words("class.stop_teaching")),
         ]
         return _group("class", words("class.title"), fields)
+
+    def _of_absent(self) -> Iterator[FormField]:
+        """What can be done with all who are away."""
+        words, members = self._words, self._teaching.classroom.present().values()
+        if away := sum(not each.connected for each in members):
+            yield _button("set_aside", words("class.set_aside", count=away))
 
     def _of_member(self) -> Iterator[FormField]:
         """What can be done with the student who is followed."""
@@ -125,6 +133,7 @@ class TeacherForm:
         fields = [
             _switch("shown", words("class.show_answers")),
             _switch("revealed", words("class.truth")),
+            *self._of_votes(),
             _button("ask_again", words("class.ask_again")),
         ]
         if self._steps.demonstration(display) is not None:
@@ -148,6 +157,16 @@ class TeacherForm:
             fields.append(_button("send_route", words("route.send")))
         fields += [_switch("large", words("lesson.presenting")), _html("code_again")]
         return _group("predictions", words("class.predictions"), fields)
+
+    def _of_votes(self) -> Iterator[FormField]:
+        """The button that closes the votes of the displayed step, or opens them again."""
+        classroom, (lesson, index) = self._teaching.classroom, self._shown
+        asked = asked_at(self._course.lesson(lesson, self._words.language), index)
+        votes = [each for each in classroom.votes if each.lesson == lesson and each.item in asked]
+        if any(each.closes is None for each in votes):
+            yield _button("close_votes", self._words("class.close_vote"))
+        elif votes:
+            yield _button("open_votes", self._words("class.open_vote"))
 
     def _pace(self) -> FormGroup:
         words, steps = self._words, self._step_options(self._chosen_pace.lesson)
@@ -194,7 +213,7 @@ class TeacherForm:
     def _of_class(self) -> Iterator[tuple[str, FieldValue]]:
         words, chosen, large = self._words, self._choices, self._large
         classroom, member = self._teaching.classroom, self._followed
-        members = classroom.members().values()
+        members = classroom.present().values()
         yield "told", chosen.told
         who = words("class.following", name=member.name) if member is not None else ""
         yield "who", "" if large else who

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from datetime import UTC, datetime
 from functools import partial
@@ -14,7 +14,7 @@ from onpath.app.classroom.class_record import class_record
 from onpath.app.classroom.classroom import Display
 from onpath.app.classroom.concept_test_results import sheets_without_names
 from onpath.app.classroom.gains_html import PAIRS
-from onpath.app.classroom.results import prediction_at
+from onpath.app.classroom.results import asked_at, have_all_answered, prediction_at
 from onpath.app.classroom.teaching.class_answers import picked
 from onpath.app.classroom.teaching.steps_for_all import StepsForAll
 from onpath.app.classroom.teaching.teacher_context import TeacherContext
@@ -26,7 +26,10 @@ from onpath.lessons.concept_test.concept_test import BEFORE
 from onpath.lessons.course import Course
 from onpath.lessons.kept.known_choices import of_today
 from onpath.lessons.pace import Pace
+from onpath.lessons.votes import Vote
 from onpath.lessons.words import Words
+
+COUNT_DOWN = 5.0  # [s] in which a vote is closed
 
 
 class TeacherOrders:
@@ -75,11 +78,14 @@ class TeacherOrders:
             "own_lab": lambda _: self._follow(0),
             "back": lambda _: self._lead(-1),
             "next": lambda _: self._lead(1),
+            "close_votes": lambda _: self._close(),
+            "open_votes": lambda _: room.open_again(self._votes),
             "ask_again": self._ask_again,
             "play": self._play,
             "put_back": lambda _: self._put_lab_back(),
             "send_step": lambda _: self._push_step(TakeStep(*self._steps.shown(room.display))),
             "send_route": self._send_route,
+            "set_aside": self._set_aside,
             "remove": self._remove,
             "delete": self._delete,
             "end_standing": lambda _: room.push(None),
@@ -139,12 +145,34 @@ class TeacherOrders:
         self._push(TakeSetup(decode(code)))
 
     def _show_answers(self, on: bool) -> None:
-        self._class.show(replace(self._class.display, shown=on))
+        since = self._close() if on else 0.0
+        self._class.show(replace(self._class.display, shown=on, since=since))
 
     def _reveal(self, on: bool) -> None:
         """Show the truth, among the answers, or hide it."""
         display = self._class.display
-        self._class.show(replace(display, revealed=on, shown=on or display.shown))
+        since = self._close() if on else display.since
+        self._class.show(replace(display, revealed=on, shown=on or display.shown, since=since))
+
+    @property
+    def _votes(self) -> list[Vote]:
+        """The votes on what the displayed step asks; on what was asked again, the second ones."""
+        name, index = self._steps.shown(self._class.display)
+        asked = asked_at(self._course.lesson(name, self._words.language), index)
+        votes = [each for each in self._class.votes if each.lesson == name and each.item in asked]
+        again = {each.item for each in votes if each.again}
+        return [each for each in votes if each.again == (each.item in again)]
+
+    def _close(self) -> float:
+        """Close the votes of the displayed step, and return when they are closed.
+
+        A count-down lets students finish, unless all who are here have answered.
+        """
+        room, votes = self._class, self._votes
+        here = [each.progress for each in room.present().values() if each.connected]
+        wait = 0.0 if have_all_answered(here, votes) else COUNT_DOWN
+        room.close([each for each in votes if each.closes is None], wait)
+        return max([each.closes or 0.0 for each in self._votes], default=0.0)
 
     def _choose_lesson(self, name: str) -> None:
         if self._course.has(name):
@@ -187,18 +215,27 @@ class TeacherOrders:
 
     # Buttons.
 
-    def _push(self, push: TakeSetup | TakeStep) -> None:
-        self._class.push(push)
+    def _push(self, push: TakeSetup | TakeStep, asks: Iterable[str] = ()) -> None:
+        self._class.push(push, asks)
         self._tell_sent()
 
     def _push_step(self, step: TakeStep | None) -> None:
         if step is not None:
             self._put_lab_back()
             self._chosen.picked = ()
-            self._push(step)
+            self._push(step, self._asked_by(step))
+
+    def _asked_by(self, step: TakeStep) -> list[str]:
+        """What the class votes on in a step; a test is answered by each student alone."""
+        if step.lesson in self._course.tests:
+            return []
+        asked = asked_at(self._course.lesson(step.lesson, self._words.language), step.step)
+        return [item for item in asked if not step.again or item == str(step.step)]
 
     def _tell_sent(self) -> None:
-        self._chosen.told = self._words("class.sent", count=len(self._class.members()))
+        self._chosen.told = self._words(
+            "class.sent", count=sum(e.connected for e in self._class.members().values())
+        )
 
     def _ask_again(self, _: int) -> None:
         name, index = self._steps.shown(self._class.display)
@@ -224,7 +261,8 @@ class TeacherOrders:
         name = self._chosen.route if self._chosen.route in routes else next(iter(routes), "")
         if name:
             first = routes[name].stop[0]
-            self._push_step(TakeStep(first.lesson, first.steps[0] - 1, name))
+            self._put_lab_back()
+            self._push(TakeStep(first.lesson, first.steps[0] - 1, name))
 
     def _send_setup(self, _: int) -> None:
         self._teaching.send_setup()
@@ -238,6 +276,10 @@ class TeacherOrders:
         pace = self._pace
         first, last = sorted((pace.first, pace.last))
         self._class.keep_within(Pace(pace.lesson, first, last))
+
+    def _set_aside(self, _: int) -> None:
+        """Set aside all who are away; each is back as soon as they come."""
+        self._chosen.told = self._words("class.set_aside_told", count=self._class.set_aside())
 
     def _remove(self, number: int) -> None:
         """Take a student out of the class; the lab goes on without it."""

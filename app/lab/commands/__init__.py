@@ -3,6 +3,7 @@
 from onpath.app.lab.commands.classroom import (
     DemonstrateStep,
     Freeze,
+    HoldVotes,
     KeepWithin,
     ReportState,
     TakeSetup,
@@ -90,6 +91,7 @@ __all__ = [
     "GoToStep",
     "Grab",
     "Hold",
+    "HoldVotes",
     "Identify",
     "KeepWithin",
     "LookAt",

@@ -14,6 +14,7 @@ from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.setups.setup import Setup
 from onpath.lessons.pace import Pace
 from onpath.lessons.progress import Answer
+from onpath.lessons.votes import Vote
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,6 +114,20 @@ class KeepWithin(Command):
             run.open_at(self.pace.lesson, self.pace.first, lab)
             lab.show_message(run.words("class.step"))
         _tell(lab)
+
+
+@dataclass(frozen=True, slots=True)
+class HoldVotes(Command):
+    """What the class is asked now; none: every vote is closed."""
+
+    from_teacher: ClassVar[bool] = True
+    votes: tuple[Vote, ...]
+
+    @override
+    def apply(self, lab: Lab) -> None:
+        lab.lessons.set_votes(self.votes)
+        if lab.lessons.is_voting:
+            lab.simulation.running = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import ClassVar
 
 from typing_extensions import override
 
 from onpath.app.lab.commands.scripts import commands_of, player_of
 from onpath.app.lab.lab import Command, Lab
+from onpath.app.lab.lesson_state import Sent
 from onpath.assets.messages import languages
 from onpath.lessons.action_schema import Action
 from onpath.lessons.progress import Answer, Sure
 from onpath.models.errors import CodedError
 from onpath.models.systems.parameter_specs import unknown_name
 
+LONGEST_KEY = 40  # [characters] of the key of an answer
 MOST_ACTIONS = 100  # of a link; those of lessons have a few
 
 
@@ -70,7 +73,33 @@ class GoToStep(Command):
 
 
 @dataclass(frozen=True, slots=True)
-class Predict(Command):
+class _Answering(Command):
+    """An answer. Its browser sends it until it is stored, and a frozen lab takes it, too.
+
+    Attributes:
+        lesson, step, key: see `Sent`; without a lesson, the open step is meant.
+    """
+
+    is_answer: ClassVar[bool] = True
+    lesson: str = field(default="", kw_only=True)
+    step: int = field(default=0, kw_only=True)
+    key: str = field(default="", kw_only=True)
+
+    @override
+    def apply(self, lab: Lab) -> None:
+        try:
+            self.give(lab, Sent(self.lesson, self.step, self.key[:LONGEST_KEY]))
+        except ValueError:
+            lab.lessons.settle(self.key)
+            raise
+
+    def give(self, lab: Lab, sent: Sent) -> None:
+        """Hand the answer to the lessons."""
+        raise NotImplementedError
+
+
+@dataclass(frozen=True, slots=True)
+class Predict(_Answering):
     """Submit a prediction: an option or a curve; with neither, skip it.
 
     Attributes:
@@ -85,7 +114,7 @@ class Predict(Command):
     why: str = ""
 
     @override
-    def apply(self, lab: Lab) -> None:
+    def give(self, lab: Lab, sent: Sent) -> None:
         answer = Answer(
             option=self.option,
             times=self.times,
@@ -94,7 +123,7 @@ class Predict(Command):
             reason=self.reason,
             why=self.why,
         )
-        lab.lessons.predict(answer, lab.simulation)
+        lab.lessons.predict(answer, lab.simulation, sent)
         lab.show_message("")  # clear the reminder that a prediction is missing
 
 
@@ -130,39 +159,39 @@ class ShowHint(Command):
 
 
 @dataclass(frozen=True, slots=True)
-class AnswerQuiz(Command):
+class AnswerQuiz(_Answering):
     """Choose an option of a question; `block` is its index in the step."""
 
     block: int
     option: int
 
     @override
-    def apply(self, lab: Lab) -> None:
-        lab.lessons.answer_quiz(self.block, self.option)
+    def give(self, lab: Lab, sent: Sent) -> None:
+        lab.lessons.answer_quiz(self.block, self.option, sent)
 
 
 @dataclass(frozen=True, slots=True)
-class AnswerNumber(Command):
+class AnswerNumber(_Answering):
     """Answer a question with a number; `block` is its index in the step."""
 
     block: int
     given: float
 
     @override
-    def apply(self, lab: Lab) -> None:
-        lab.lessons.answer_number(self.block, self.given)
+    def give(self, lab: Lab, sent: Sent) -> None:
+        lab.lessons.answer_number(self.block, self.given, sent)
 
 
 @dataclass(frozen=True, slots=True)
-class AnswerInWords(Command):
+class AnswerInWords(_Answering):
     """Answer an open question; `block` is its index in the step."""
 
     block: int
     typed: str
 
     @override
-    def apply(self, lab: Lab) -> None:
-        lab.lessons.answer_in_words(self.block, self.typed)
+    def give(self, lab: Lab, sent: Sent) -> None:
+        lab.lessons.answer_in_words(self.block, self.typed, sent)
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,6 +11,7 @@ from onpath.app.lab.snapshots.snapshot import Snapshot
 from onpath.lessons.checks import Verdict
 from onpath.lessons.pace import Pace
 from onpath.lessons.progress import Progress, Truth
+from onpath.lessons.votes import Vote
 from onpath.models.closed_loop.lab_settings import LabSettings
 from onpath.models.control.place import Place
 from onpath.models.control.settable import parameters_from
@@ -91,6 +92,7 @@ class LessonSnapshot:
         verdicts: on the checks of the open step's tasks, by task.
         truth: actual curves of the quantity that the open step predicts, or None.
         pace: the steps within which the teacher lets the student go; None if anywhere.
+        votes: what the class is asked now.
         presenting: whether it is shown to a class, with large type.
     """
 
@@ -100,6 +102,7 @@ class LessonSnapshot:
     verdicts: dict[str, list[Verdict]]
     truth: Truth | None
     pace: Pace | None = None
+    votes: tuple[Vote, ...] = ()
     presenting: bool = False
 
 
@@ -116,6 +119,7 @@ class PageSnapshot(Snapshot):
         wall_forces: between each end-point and the wall, by side, [N]; empty without a wall.
         places: of the robots on the path, for the poles of their laws.
         shared: the last share code made.
+        sent: keys of answers that are stored; see `LessonState.sent`.
         nickname: the student's nickname in the class, or empty.
     """
 
@@ -125,6 +129,7 @@ class PageSnapshot(Snapshot):
     edit: PathEdit
     lesson: LessonSnapshot
     shared: str
+    sent: tuple[str, ...]
     nickname: str
     settings: LabSettings
     refused: dict[str, str]

@@ -100,6 +100,7 @@ def take_page_snapshot(
         edit=_path_edit(simulation),
         lesson=_lesson(lab),
         shared=lab.shared,
+        sent=lab.lessons.sent,
         nickname=nickname,
         wall_forces=wall_forces(simulation),
         settings=simulation.settings,
@@ -289,6 +290,7 @@ def _lesson(lab: Lab) -> LessonSnapshot:
         verdicts=dict(run.verdicts),
         truth=_truth(lab),
         pace=run.pace,
+        votes=run.votes,
         presenting=lab.simulation.settings.presenting,
     )
 

@@ -6,6 +6,7 @@ import { sampleAt, type Act, type Change, type Engine, type PathShape, type RowD
 import { AT_JOINTS } from "../core/symbols"
 import { Files } from "./files"
 import { keep, keepLab, kept, siteOf } from "./kept"
+import { Outbox } from "./outbox"
 import { RemoteSettings } from "./settings"
 import {
     PROTOCOL, type Ask, type ClassMessage, type Command, type Compared, type CompareSheet, type DisplaySheet, type FrameMessage, type Hello, type HelpSheet, type Index, type KeepSheet,
@@ -137,6 +138,8 @@ export class RemoteEngine implements Engine {
     /** Whether the lab is of another version. */
     outdated = false
     readonly files = new Files(message => this.send(message))
+    /** Answers that are not stored yet. */
+    readonly outbox = new Outbox(command => this.send(command), () => this.tell("lesson"))
     readonly settings = new RemoteSettings(message => this.send(message))
     /** The forms of the lab and of an open step; the lab tells them if it is asked. */
     readonly forms = new Map<FormMessage["place"], FormMessage>()
@@ -362,6 +365,7 @@ export class RemoteEngine implements Engine {
         } else if (message.is === "state") {
             this.lab = { ...this.lab, ...message } as StateMessage // the first one has everything
             this.askLines()
+            this.outbox.settle(this.lab.sent)
             this.tell("state")
         } else if (message.is === "lesson") {
             this.lesson = message
@@ -383,6 +387,7 @@ export class RemoteEngine implements Engine {
         } else if (message.is === "lab") {
             keepLab(message.code)
             keepDraftsOf(message.code)
+            this.outbox.reach(message.code)
             if (this.hasLab) this.askAgain() // another lab, or the same one as another page
             this.hasLab = true
         }

@@ -203,7 +203,7 @@ export interface MakeFile {
 /** An order of a teacher to the class; refused from any other page. */
 export interface Lead {
     is: "lead"
-    do: "ask_again" | "back" | "delete" | "end" | "end_standing" | "forget" | "freeze" | "keep" | "let_go" | "next" | "own_lab" | "play" | "put_back" | "record" | "remove" | "send_route" | "send_setup" | "send_step" | "stop" | "thaw"
+    do: "ask_again" | "back" | "close_votes" | "delete" | "end" | "end_standing" | "forget" | "freeze" | "keep" | "let_go" | "next" | "open_votes" | "own_lab" | "play" | "put_back" | "record" | "remove" | "send_route" | "send_setup" | "send_step" | "set_aside" | "stop" | "thaw"
     /** number of the student whom it concerns. */
     member?: number
 }
@@ -285,9 +285,9 @@ export interface Teach {
 export type Command =
     | { do: "Act"; actions: Action[] }
     | { do: "AddPoint" }
-    | { do: "AnswerInWords"; block: number; typed: string }
-    | { do: "AnswerNumber"; block: number; given: number }
-    | { do: "AnswerQuiz"; block: number; option: number }
+    | { do: "AnswerInWords"; lesson?: string; step?: number; key?: string; block: number; typed: string }
+    | { do: "AnswerNumber"; lesson?: string; step?: number; key?: string; block: number; given: number }
+    | { do: "AnswerQuiz"; lesson?: string; step?: number; key?: string; block: number; option: number }
     | { do: "BeginStepAnew" }
     | { do: "ChooseLaw"; side: string; law: string }
     | { do: "ChoosePath"; name: string }
@@ -315,7 +315,7 @@ export type Command =
     | { do: "OpenLesson"; name: string }
     | { do: "PlacePoint"; first?: number | null; second?: number | null }
     | { do: "PlayStep" }
-    | { do: "Predict"; option?: number | null; times?: number[]; values?: number[]; sure?: "" | "certain" | "fairly" | "guessing"; reason?: number | null; why?: string }
+    | { do: "Predict"; lesson?: string; step?: number; key?: string; option?: number | null; times?: number[]; values?: number[]; sure?: "" | "certain" | "fairly" | "guessing"; reason?: number | null; why?: string }
     | { do: "Pulse" }
     | { do: "Redo" }
     | { do: "Release"; side?: string | null }
@@ -529,6 +529,8 @@ export interface StateMessage {
     laws: string[]
     /** the share code that was made last; may be empty. */
     shared: string
+    /** keys of the latest answers that are stored, and of those that cannot be taken: they need not be sent again. */
+    sent: string[]
     /** how many times the page had asked for a picture of the robots when it asked for the present one; 0 without one. */
     scene: number
 }

@@ -155,8 +155,9 @@ export interface ChartData { data: SketchData; script: Script | null; answer: An
 export type BlockData =
     // Links have actions: those above on a page without a server, those of channel/messages.ts in the lab.
     | { kind: "text"; links: (unknown[] | null)[]; when?: [string, number[]] }
-    | { kind: "choice" | "quiz"; right?: number } // a lab keeps it to itself until there is an answer
-    | { kind: "number"; number?: number; tolerance?: number; wrong?: number[] }
+    // A lab keeps what is right to itself until there is an answer, and while the class votes.
+    | { kind: "choice" | "quiz"; right?: number; voted?: boolean }
+    | { kind: "number"; number?: number; tolerance?: number; wrong?: number[]; voted?: boolean }
     | { kind: "open" }
     | SketchData
     | TaskData

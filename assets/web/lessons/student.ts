@@ -24,6 +24,9 @@ export interface Student {
     reads(task: string, hint: number): void
     /** A run was seen to its end; `asked` is the step of the prediction that it shows. */
     sees(step: number, asked: number, truth: Curves): void
+    /** What has become of the answer to a prediction, by its step, or to a question, by step and block; empty where none is
+     * sent anywhere. */
+    way(item: string): "" | "sending" | "sent"
     /** How far a task is done in the present run; null if that is unknown. */
     result(task: TaskData): Result | null
 }
@@ -100,6 +103,8 @@ export class LocalStudent implements Student {
         this.notes.played[String(step)] = true
         this.save()
     }
+
+    way(): "" { return "" }
 
     result({ checks, ways, id, best }: TaskData): Result | null {
         if (!checks || !this.about) return null

@@ -34,9 +34,8 @@ function repliedTo(page: PageData, reply: Element | null): HTMLElement[] {
     return [...lines, made("p", "", phrase(page, "lesson.once_more"))]
 }
 
-/** Make a question answerable. */
-export function ask(page: PageData, element: HTMLElement, block: BlockData, key: string, student: Student): void {
-    const { notes } = student
+/** Make a question answerable. Returns what shows the answer, or what has become of it. */
+export function ask(page: PageData, element: HTMLElement, block: BlockData, key: string, student: Student): () => void {
     const told = element.querySelector<HTMLElement>(".verdict")!
     const after = element.querySelector<HTMLDetailsElement>(".after") // a lab sends it with its verdict
     if (after) after.hidden = true
@@ -44,11 +43,26 @@ export function ask(page: PageData, element: HTMLElement, block: BlockData, key:
     const button = made("button", "script-only", phrase(page, block.kind === "open" || page.test ? "answer.keep" : "answer.check"))
     button.type = "button"
     told.before(button)
-    const kept = () => (block.kind === "quiz" ? notes.quiz : block.kind === "number" ? notes.numbers : notes.written)[key]
+    let shown: unknown, wasSending = false // the answer that is judged
+    const kept = () => {
+        const { quiz, numbers, written } = student.notes
+        return (block.kind === "quiz" ? quiz : block.kind === "number" ? numbers : written)[key]
+    }
     const show = () => {
-        const own = kept()
-        if (own === undefined || page.test) return
-        const first = notes.first[key] === own // a lab keeps what is right to itself until the second answer
+        const own = kept(), way = student.way(key), isSending = way === "sending"
+        button.disabled = isSending
+        if (isSending) {
+            told.textContent = phrase(page, "answer.sending")
+            shown = undefined
+        } else if (wasSending) told.textContent = ""
+        wasSending = isSending
+        if (isSending || own === undefined || own === shown) return
+        shown = own
+        if (page.test || ("voted" in block && block.voted)) { // nobody is told yet what is right
+            if (way) told.textContent = phrase(page, "answer.sent")
+            return
+        }
+        const first = student.notes.first[key] === own // a lab keeps what is right to itself until the second answer
         if (block.kind === "quiz") {
             if (block.right === undefined || (first && own !== block.right)) return told.replaceChildren(...repliedTo(page, element.querySelector(`[data-answer="${own}"]`)))
             return told.replaceChildren(...judged(page, element, block.right, own as number).childNodes)
@@ -99,8 +113,10 @@ export function ask(page: PageData, element: HTMLElement, block: BlockData, key:
         } else if (input.value.trim()) student.writes(key, input.value.trim().slice(0, 1000))
         else return
         keepDraft(name, null)
+        shown = undefined
         show()
     })
+    return show
 }
 
 function hash(text: string): number {

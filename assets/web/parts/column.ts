@@ -9,6 +9,7 @@ import type { Verdict } from "../lessons/checks"
 import { noNotes } from "../lessons/notes"
 import type { Result, Student } from "../lessons/student"
 import type { RemoteEngine } from "../channel/channel"
+import type { AnswerCommand } from "../channel/outbox"
 import { Legend } from "./legend"
 import { compared } from "./predictions"
 import { StepView, type Robots } from "./step"
@@ -26,18 +27,25 @@ class RemoteStudent implements Student {
     changed: () => void = () => {}
     verdicts: Record<string, Verdict[]> = {}
 
-    constructor(private readonly engine: RemoteEngine) {}
+    constructor(private readonly engine: RemoteEngine, private readonly page: PageData) {}
 
     goes(): void {}
     sees(): void {}
-    predicts(_: number, { option, times, values, sure, reason, why }: Answer): void {
+    predicts(step: number, { option, times, values, sure, reason, why }: Answer): void {
         const given = { option, times, values, sure, reason, why }
-        this.engine.send({ do: "Predict", ...Object.fromEntries(Object.entries(given).filter(([, each]) => each !== undefined)) })
+        this.post({ do: "Predict", ...Object.fromEntries(Object.entries(given).filter(([, each]) => each !== undefined)) }, String(step))
     }
-    chooses(question: string, option: number): void { this.engine.send({ do: "AnswerQuiz", block: placeOf(question), option }) }
-    gives(question: string, given: number): void { this.engine.send({ do: "AnswerNumber", block: placeOf(question), given }) }
+    chooses(question: string, option: number): void { this.post({ do: "AnswerQuiz", block: placeOf(question), option }, question) }
+    gives(question: string, given: number): void { this.post({ do: "AnswerNumber", block: placeOf(question), given }, question) }
     reads(): void {} // the server shows the hints, and so knows
-    writes(question: string, typed: string): void { this.engine.send({ do: "AnswerInWords", block: placeOf(question), typed }) }
+    writes(question: string, typed: string): void { this.post({ do: "AnswerInWords", block: placeOf(question), typed }, question) }
+    way(item: string): "" | "sending" | "sent" {
+        if (this.engine.outbox.has(this.page.lesson, item)) return "sending"
+        return this.engine.seat?.place === "member" ? "sent" : ""
+    }
+    private post(answer: AnswerCommand, item: string): void {
+        this.engine.outbox.post(answer, this.page.lesson, Number.parseInt(item))
+    }
     result({ id }: TaskData): Result | null {
         const verdicts = this.verdicts[id]
         return verdicts ? { verdicts, run: 0 } : null
@@ -70,8 +78,8 @@ export class Column implements Robots {
 
     constructor(texts: Texts, private readonly engine: RemoteEngine, private readonly isWide: () => boolean,
         light: (symbol: string) => void, ended: AbortSignal) {
-        this.student = new RemoteStudent(engine)
         this.page = { words: texts.words, lesson: "", symbols: {}, figures: [], steps: [], lessons: {} }
+        this.student = new RemoteStudent(engine, this.page)
         this.element.id = "op-column"
         this.element.hidden = true
         this.pager.ariaLabel = phrase(texts, "lesson.lessons")

@@ -124,10 +124,16 @@ export function predict(page: PageData, prediction: Prediction, student: Student
         if (answer.times) told.textContent = phrase(page, "lesson.drawn")
         answers()
     }
+    let wasSending = false
     const show = () => {
-        const kept = answerKept()
+        const kept = answerKept(), way = student.way(String(prediction.step))
+        if (way === "sending") tell(told, phrase(page, "answer.sending"))
+        else if (wasSending && !kept) tell(told, "")
+        wasSending = way === "sending"
+        commit.disabled = wasSending || (answer.times === undefined && answer.option === undefined)
         if (!kept) return
-        if (given(kept) || commit.disabled) tell(told, phrase(page, given(kept) ? "lesson.committed" : "site.skipped"))
+        const says = !given(kept) ? "site.skipped" : way === "sent" ? "answer.sent" : "lesson.committed"
+        if (way !== "sending" && (given(kept) || commit.disabled)) tell(told, phrase(page, says))
         if (!given(kept) || asked.hidden) return
         asked.hidden = true
         element.querySelectorAll<HTMLInputElement>("input").forEach(input => (input.disabled = true))

@@ -36,6 +36,7 @@ export interface Places {
 export class StepView {
     /** The form of a prediction that is asked here. */
     form: PredictionForm | null = null
+    private readonly asked = new Map<number, () => void>() // by block: shows the answer to a question
     private compared: Comparison | null = null
     private shown = "" // what it compares
     private played = false // whether the run was on when it was last looked at
@@ -61,7 +62,7 @@ export class StepView {
         if (!element) return // for other answers
         if (block.kind === "text") this.links(element, place, block.links)
         else if (block.kind === "quiz" || block.kind === "number" || block.kind === "open")
-            ask(page, element, block, `${index}.${place}`, student)
+            this.asked.set(place, ask(page, element, block, `${index}.${place}`, student))
         else if (prediction?.step === index && prediction.block === place) {
             const before = this.form
             before?.board?.remove()
@@ -130,6 +131,7 @@ export class StepView {
         const { section } = this.places
         const step = page.steps[index]!
         this.form?.show()
+        for (const show of this.asked.values()) show()
         if (step.kind !== "run") return
         const told = section.querySelector<HTMLElement>(".play")
         const button = told?.querySelector<HTMLButtonElement>("button:not(.read)")

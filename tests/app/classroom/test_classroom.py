@@ -447,7 +447,7 @@ def test_choices_are_counted(course: Course) -> None:
     found = prediction_at(lesson, 4)
     assert found is not None and found[0] == 3 and isinstance(found[1], Choice)
     ways = answered(Answer(1), Answer(1), Answer(0), Answer(), Answer(7), None, step=3)
-    counted = distribution(found[1], LESSON, 3, [*ways, Progress()])
+    counted = distribution(found[1], LESSON, "3", [*ways, Progress()])
     assert (counted.counts, counted.skipped, counted.waiting) == ((1, 2), 1, 2)
     hidden = page.prediction_view(found[1], counted, None, False, ENGLISH)
     revealed = page.prediction_view(found[1], counted, None, True, ENGLISH)
@@ -464,7 +464,7 @@ def test_sketches_lie_over_the_truth(course: Course) -> None:
     truth = Truth("distance", (0.0, 2.0), (0.0, 50.0), (0.0, 1.0))
     played = Progress(notes={LESSON: Notes(truths={"1": truth})})
     assert truth_of(LESSON, 1, ways) is None and truth_of(LESSON, 1, [*ways, played]) == truth
-    counted = distribution(found[1], LESSON, 1, ways)
+    counted = distribution(found[1], LESSON, "1", ways)
     hidden = page.prediction_view(found[1], counted, truth, False, ENGLISH)
     revealed = page.prediction_view(found[1], counted, truth, True, ENGLISH)
     plots = [view.partition("</svg>")[0] for view in (hidden, revealed)]

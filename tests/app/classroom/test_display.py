@@ -14,7 +14,7 @@ from markupsafe import escape
 from onpath.app.classroom.class_state import from_stored, to_stored
 from onpath.app.classroom.classroom import NOTHING_DONE, Classroom, ClassState, Display
 from onpath.app.classroom.concept_test_results import question_at
-from onpath.app.classroom.results import prediction_at
+from onpath.app.classroom.results import asked_at
 from onpath.app.classroom.teaching.class_answers import ClassAnswers
 from onpath.app.classroom.teaching.teacher_context import TeacherChoices
 from onpath.app.lab.commands import TakeSetup, TakeStep
@@ -22,7 +22,7 @@ from onpath.app.lab.setups.setup import Setup
 from onpath.app.server.built_in_course import built_in_course
 from onpath.lessons.concept_test.concept_test import TESTS
 from onpath.lessons.progress import Progress
-from onpath.lessons.schema import Choice
+from onpath.lessons.schema import Choice, Quiz
 from onpath.lessons.words import ENGLISH, Words, languages
 
 switches = st.booleans()
@@ -82,10 +82,11 @@ def test_every_question_of_a_lesson_is_shown_with_its_options_before_its_answers
         lesson = course.lesson(name, language)
         for index, step in enumerate(lesson.steps):
             room.show(Display(name, index))
-            view, asked = answers.view(True), prediction_at(lesson, index)
-            told = [step.title] if asked is None else [asked[1].question]
-            if asked is not None and isinstance(asked[1], Choice):
-                told += [option.text for option in asked[1].options]
+            view, asked = answers.view(True), asked_at(lesson, index).values()
+            told = [block.question for block in asked] or [step.title]
+            for block in asked:
+                if isinstance(block, Choice | Quiz):
+                    told += [option.text for option in block.options]
             assert all(str(escape(text)) in view for text in told), (name, index)
             assert "background:" not in view and "✓" not in view
 

@@ -72,7 +72,7 @@ def test_who_has_not_answered_before_answers_the_second_time_only(course: Course
 def test_it_can_be_asked_again_and_again_and_skipped(course: Course) -> None:
     lab = asked(course, 0, 1)
     do(lab, TakeStep(LESSON, CHOICE, again=True))
-    assert lab.lessons.waits and lab.lessons.notes.asked_again == (str(CHOICE),)
+    assert lab.lessons.waits and lab.lessons.notes.asked_again == (str(CHOICE),) * 2
     do(lab, c.GoToStep(1))  # skips it
     assert not lab.lessons.waits and lab.lessons.notes.second[str(CHOICE)].skipped
 
@@ -101,7 +101,9 @@ def bars(shown: str) -> list[int]:
 def test_both_distributions_stand_side_by_side(course: Course) -> None:
     block = course.lesson(LESSON, "en").steps[CHOICE].predictions()[0]
     ways = [member.progress for member in members(course)]
-    first, second = (distribution(block, LESSON, CHOICE, ways, again) for again in (False, True))
+    first, second = (
+        distribution(block, LESSON, str(CHOICE), ways, again=again) for again in (False, True)
+    )
     assert (first.counts, first.waiting) == ((3, 1), 0)
     assert (second.counts, second.waiting) == ((1, 2), 1)
     shown = page.prediction_view(block, first, None, False, ENGLISH, second=second)
@@ -117,7 +119,10 @@ def test_sketches_of_both_rounds_have_a_plot_each(course: Course) -> None:
     lab = Lab(loop_cache(), FIVE_BAR, course)
     do(lab, TakeStep(LESSON, SKETCH), CURVE, TakeStep(LESSON, SKETCH, again=True))
     do(lab, CURVE)
-    both = [distribution(block, LESSON, SKETCH, [lab.lessons.progress], a) for a in (False, True)]
+    both = [
+        distribution(block, LESSON, str(SKETCH), [lab.lessons.progress], again=a)
+        for a in (False, True)
+    ]
     shown = page.prediction_view(block, both[0], None, False, ENGLISH, second=both[1])
     assert shown.count("<svg") == 2 and shown.count("<polyline") == 2
 
@@ -145,7 +150,7 @@ def test_the_teacher_sees_them_or_only_how_many_there_are(course: Course) -> Non
     teaching: Any = Teaching(room)
     answers = ClassAnswers(course, ENGLISH, teaching)
     hidden = answers.view(False)
-    assert bars(hidden) == [] and ENGLISH("class.given", given=1, skipped=0, waiting=0) in hidden
+    assert bars(hidden) == [] and ENGLISH("class.given", given=1, here=1, away=0) in hidden
     room.show(replace(room.display, shown=True))
     assert bars(answers.view(False)) == [1, 0, 0, 1]
 

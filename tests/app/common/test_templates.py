@@ -122,7 +122,7 @@ def nickname(text: str) -> str:
 
 def choices(text: str) -> str:
     block = Choice(text, (Option(text, text), Option(text, text, right=True)))
-    found = distribution(block, NAME, 0, [])
+    found = distribution(block, NAME, "0", [])
     return class_html.prediction_view(block, found, None, True, ENGLISH)
 
 
@@ -195,7 +195,7 @@ def pieces(run: LessonRun, words: Words) -> Iterator[str]:
     for block in step.predictions():
         sketch = Answer(times=(0.0, 1.0), values=(0.0, 1.0))
         ways = [Progress(notes={lesson.name: Notes(answers={str(run.index): sketch})})]
-        found = distribution(block, lesson.name, run.index, ways)
+        found = distribution(block, lesson.name, str(run.index), ways)
         for revealed in (True, False):
             yield class_html.prediction_view(block, found, None, revealed, words)
 

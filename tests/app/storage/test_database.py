@@ -563,8 +563,9 @@ class Pauses(threading.Event):
 def test_states_are_written_every_few_seconds() -> None:
     store, n = Memory(), 0
     keeper = WriteBehind(store, interval=2.0)
-    pauses = Pauses(store)
-    keeper._closing = pauses
+    pauses = keeper._closing = Pauses(store)
+    keeper._hurry = Pauses(store)
+    keeper._hurry.before_save = pauses.before_save
     while len(store.saved) < 5:
         keeper.submit("a", number(n))
         n += 1

@@ -15,7 +15,7 @@ const NUMBER = `<input><p class="verdict"></p>
     <details class="after"><div>so it is six</div><div data-answer="0" hidden>a factor two</div></details>`
 
 /** A question on the site or, with only the answers that a lab sends, in a lab; `answer` gives an answer. */
-function asked(block: BlockData, inside: string, isTest = false) {
+function asked(block: BlockData, inside: string, isTest = false, way = (): string => "") {
     document.body.innerHTML = `<section id="step-1"><div data-block="0">${inside}</div></section>` // oxlint-disable-line no-restricted-properties
     const page = { words: TEXTS.words, lesson: "a", test: isTest, steps: [{ kind: "quiz", blocks: [block] }] } as unknown as PageData
     const element = document.querySelector<HTMLElement>("[data-block]")!
@@ -24,15 +24,19 @@ function asked(block: BlockData, inside: string, isTest = false) {
         notes[kind][key] = given
         notes.first[key] ??= given
     }
-    const student = { notes, name: "", chooses: gives("quiz"), gives: gives("numbers") } as unknown as Student
-    ask(page, element, block, "0.0", student)
+    const student = { notes, name: "", chooses: gives("quiz"), gives: gives("numbers"), way } as unknown as Student
+    const shows = ask(page, element, block, "0.0", student)
+    const show = () => {
+        shows()
+        return element.querySelector(".verdict")!.textContent
+    }
     const answer = (given: number) => {
         if (block.kind === "quiz") element.querySelectorAll("input").forEach(each => (each.checked = each.value === String(given)))
         else element.querySelector("input")!.value = String(given)
         element.querySelector("button")!.click()
         return element.querySelector(".verdict")!.textContent
     }
-    return { answer, after: element.querySelector<HTMLElement>(".after") }
+    return { answer, show, after: element.querySelector<HTMLElement>(".after") }
 }
 
 const says = (text: string, ...parts: string[]) => OPTIONS.concat("six", "a factor two", "lesson.not_quite", "lesson.right", "lesson.once_more")
@@ -59,6 +63,15 @@ test("in a lab, which keeps what is right to itself, it is the same", () => {
 
 test("a test tells nothing", () => {
     says(asked({ kind: "quiz" }, QUIZ, true).answer(1))
+})
+
+test("while a class votes, an answer is being sent or sent, and nothing else is said", () => {
+    let way = "sending"
+    const only = QUIZ.replaceAll(/<li data-answer="[02]">[a-z ]*<\/li>/g, "")
+    const { answer, show } = asked({ kind: "quiz", voted: true }, only, false, () => way)
+    assert.equal(answer(1), "answer.sending")
+    way = "sent"
+    assert.equal(show(), "answer.sent")
 })
 
 test("a number is answered by its known mistake, then by the right one", () => {

@@ -18,7 +18,7 @@ const OPTIONS = `<ul class="options"><li><input type="radio" name="o" value="0">
 /** The student, whose notes the server keeps; `left`: what has been committed. */
 function student(left: unknown[] = []): Student {
     const commit = (...given: unknown[]) => void left.push(given)
-    return { notes: noNotes(), name: "", predicts: commit, chooses: commit, gives: commit, writes: commit } as unknown as Student
+    return { notes: noNotes(), name: "", predicts: commit, chooses: commit, gives: commit, writes: commit, way: () => "" } as unknown as Student
 }
 
 /** A page with one question, as if it had just been loaded. */
