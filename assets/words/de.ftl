@@ -416,7 +416,7 @@ law-trajectory_tracking-good = Sie ist pünktlich: Auch nach einem Hindernis ist
 law-trajectory_tracking-limits = Festgehalten wartet sie nicht: Losgelassen verlässt sie die Kurve, um aufzuholen.
 law-trajectory_tracking-objection = Wer sie einsetzt, würde den Fahrplan nach dem Loslassen neu planen, damit nichts aufzuholen ist.
 law-path_following-label = Bahnfolgeregelung
-law-path_following-text = Bleibt auf der Kurve und regelt das Tempo auf ihr; eine Uhr hat sie nicht. Mit K5 = 0 ist sie eine virtuelle Führung (guiding virtual fixture): Wie es auf der Kurve vorangeht, bestimmt die Hand.
+law-path_following-text = Bleibt auf der Kurve und regelt das Tempo auf ihr; eine Uhr hat sie nicht, und mit K5 = 0 ist sie eine virtuelle Führung (guiding virtual fixture): Dann bewegt nur die Hand den Roboter auf der Kurve.
 law-path_following-good = Festgehalten und losgelassen bleibt sie auf der Kurve und geht ohne Hast mit dem gewünschten Tempo weiter.
 law-path_following-limits = Verlorene Zeit bleibt verloren: Nach der Bremse ist sie um so viel zu spät, wie sie festgehalten wurde.
 law-path_following-objection = Ihre Autoren begrenzen weder das Integral noch den Abstand, aus dem (16) zurückführt; hier geschieht beides.

@@ -159,8 +159,8 @@ def tangential(view: View) -> ca.SX:
 LAW = Law(
     name="path_following",
     label="Path following",
-    text="Stays on the curve and regulates the speed along it; it has no clock. With K5 = 0 it is a"
-    " guiding virtual fixture: it leaves the motion along the curve to the hand.",
+    text="Stays on the curve and regulates the speed along it; it has no clock, and with K5 = 0 it"
+    " is a guiding virtual fixture: a hand alone moves the robot along.",
     source="Hladio, Nielsen and Wang, eqs. (16)-(19)",
     command=path_following,
     aim="theta",

@@ -66,6 +66,16 @@ def test_path_following_stays_and_is_late_by_as_long_as_it_was_held() -> None:
     assert max(each.overspeed for each in outcomes("path_following", "brake")) < 0.01
 
 
+def test_with_k5_0_path_following_is_a_guiding_virtual_fixture() -> None:
+    """At rest it stays at rest; a hand's pull moves it along the curve, and hardly across."""
+    still = onpath.simulate(K5=0, speed=0, duration=1.0)
+    assert np.abs(still.theta_rate).max() < 1e-6
+    for angle in (0.6, -1.0):
+        hand = RADIUS * np.cos(angle), RADIUS * np.sin(angle)
+        led = onpath.simulate(K5=0, speed=0, duration=3.0, push=(0.1, 3.0, hand))
+        assert abs(led.theta[-1] - angle) < 0.01 and led.max_distance < 0.005
+
+
 def test_contouring_is_on_time_while_its_error_is_small_and_then_goes_far_off() -> None:
     for obstruction in ("none", "start_off_at_rest"):
         assert all(abs(delay) < ON_TIME for delay in delays("contouring", obstruction))
