@@ -21,7 +21,7 @@ class PathFile(Struct, frozen=True, forbid_unknown_fields=True, tag_field="kind"
         opened: whether it is open, although its ends meet.
         turn: angle by which it is turned anticlockwise, [degrees].
         right, up: coordinates of its middle in the plane of the path, [mm].
-        part: number of the wanted line of the file, from 1; 0: the longest.
+        part: number of the wanted line of the file, from 1; 0: all of them.
     """
 
     size: Annotated[float, Meta(ge=0, le=400)] = 100.0
@@ -111,10 +111,8 @@ class FileMessage(Struct, frozen=True, tag_field="is", tag="file"):
         number: of the file.
         state: more of it is awaited, it is being read, it has been used, or it is refused.
         received: how much has come, [B].
-        why: it is refused, or what is followed is only near it: a sentence in the page's language;
-            else empty.
+        why: it is refused, in a sentence in the page's language; else empty.
         lines: those in the file as they lie in it, each x, y, x, y, … from 0 to 1000; y points up.
-        part: number of the line that was taken, from 1; 0: none.
         helps: what would help.
     """
 
@@ -123,7 +121,6 @@ class FileMessage(Struct, frozen=True, tag_field="is", tag="file"):
     received: int = 0
     why: str = ""
     lines: tuple[tuple[int, ...], ...] = ()
-    part: int = 0
     helps: tuple[PathHelp, ...] = ()
 
 

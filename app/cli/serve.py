@@ -188,7 +188,8 @@ class Serve:
     def _path(self, entry: RobotEntry) -> PathDesign | None:
         """The path of new labs; None: the usual one."""
         from onpath.app.notebook.arguments import curve_of, path_name
-        from onpath.models.paths.path_design import from_curve, presets
+        from onpath.models.paths.drawing_design import from_curve
+        from onpath.models.paths.path_design import presets
         from onpath.models.studies.experiments import check_path, path_remark
 
         if self.path is None:

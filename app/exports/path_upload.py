@@ -24,7 +24,7 @@ from onpath.app.exports.export_process import (
     ExportProcess,
     ExportStopped,
 )
-from onpath.app.lab.commands import FollowCurve
+from onpath.app.lab.commands.path import FollowCurve
 from onpath.lessons.words import Words
 from onpath.models.arrays import Array
 from onpath.models.errors import Coded, CodedError, Message
@@ -34,12 +34,10 @@ from onpath.models.path_files.reading import (
     drawing_of,
     path_of,
     path_of_drawing,
-    taken_lines,
 )
 from onpath.models.path_files.stroke import LineDrawing
 from onpath.models.paths.curve_faults import curve_faults
-from onpath.models.paths.curves import SeriesCurve
-from onpath.models.paths.nearest_path import nearest_path
+from onpath.models.paths.curve_fit import deviation_of
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
@@ -80,17 +78,14 @@ class Read:
     Attributes:
         found: the command that follows its path, or why there is none.
         lines: points of the first lines of the file from 0 to 1, y upwards, shape (n, 2) each.
-        part: number of the line that was taken, from 1; 0: none.
-        why: why not the path itself is followed, in the page's language; else empty.
-        is_kept: whether not even one near it could be, so that the path remains as it was.
+        why: why the path is not followed, in the page's language; else empty. The command then
+            shows where, and the path remains as it was.
         helps: what would help, and how the line must then be placed.
     """
 
     found: FollowCurve | Message | ValueError
     lines: tuple[Array, ...] = ()
-    part: int = 0
     why: str = ""
-    is_kept: bool = False
     helps: tuple[tuple[Message, Placing], ...] = ()
 
 
@@ -106,33 +101,20 @@ def read_upload(upload: Upload, language: str) -> Read:
     except ValueError as error:
         why = error.message if isinstance(error, Coded) else error
         return Read(why, _preview(drawing))
-    curve, words = read.curve, Words(language)
-    assert isinstance(curve, SeriesCurve)
-    robot, nearest = ROBOTS[upload.robot].make(upload.parameters), None
+    curve, words, remarks = read.curve, Words(language), read.remarks
+    robot = ROBOTS[upload.robot].make(upload.parameters)
     why, helps = "", tuple[tuple[Message, Placing], ...]()
     if faults := curve_faults(robot.margin, curve):
-        nearest = nearest_path(robot.margin, curve)
         reasons = "; ".join(words.sentence(fault.reason) for fault in faults)
-        apart = "" if nearest is None else f"{1e3 * nearest.deviation:.1f}"
-        why = words("design.nearest" if apart else "design.not_near", reasons=reasons, apart=apart)
+        why = words("design.not_followed", reasons=reasons)
         if drawing is not None:
             helps = tuple(_helps(robot, drawing, placing, read))
-    found = FollowCurve(
-        closed=curve.closed,
-        terms=curve.terms(),
-        given=curve.given,
-        deviation=curve.deviation,
-        nearest=None if nearest is None else nearest.terms(),
-        apart=0.0 if nearest is None else nearest.deviation,
-        remarks=" ".join(words.sentence(remark) for remark in read.remarks),
-    )
-    part = 0 if drawing is None else taken_lines(drawing, placing.part)[0]
+    if curve.given is not None:
+        remarks = (deviation_of(curve), *(each for each in remarks if each.code != "say.deviates"))
     return Read(
-        found=found,
+        found=FollowCurve(curve, " ".join(words.sentence(remark) for remark in remarks)),
         lines=_preview(drawing),
-        part=part,
         why=why,
-        is_kept=bool(why) and nearest is None,
         helps=helps,
     )
 

@@ -31,6 +31,7 @@ from onpath.models.errors import Message
 from onpath.models.layout import Layout
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.distance import closest_parameters, near_distance
+from onpath.models.paths.spline_curves import SplineCurve
 from onpath.models.systems.efforts import exceeded
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
@@ -364,7 +365,7 @@ class ClosedLoopRun:
         row, state = self.shown(), self.fields()
         for name in ("xi", "xi_rate"):
             row[name][:] = 0.0
-        if loop is not None:
+        if loop is not None and self._suits(curve):
             self._unfilled = None
             _, rows = loop.run(self.state.copy(), self.settings, curve.table(), 1)
             first = self.log.unpack(rows[0])
@@ -377,6 +378,12 @@ class ClosedLoopRun:
         row["speed"][:] = state["theta_rate"] * np.linalg.norm(curve.at(state["theta"], 1), axis=1)
         distance = near_distance(self.robot.frame, curve, row["y"][None], row["theta"])
         self.slot[0].distances[:] = distance
+
+    def _suits(self, curve: Curve) -> bool:
+        """Whether the loop is one for curves of this kind; after a jump it may still be another."""
+        kind, spline = self.kind, isinstance(curve, SplineCurve)
+        same = kind.closed, kind.space, kind.spline
+        return same == (curve.closed, curve.dimension == 3, spline)
 
 
 def project(runs: Sequence[ClosedLoopRun], curve: Curve) -> None:

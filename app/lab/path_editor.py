@@ -8,7 +8,7 @@ import numpy as np
 
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
-from onpath.models.paths.curve_blend import blend
+from onpath.models.paths.curve_blend import blend, mixes
 from onpath.models.paths.curve_faults import Fault, curve_faults
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.path_design import PathDesign
@@ -35,7 +35,7 @@ class Blend:
 
     @property
     def curve(self) -> Curve:
-        """The followed curve; closed and open curves are not blended."""
+        """The followed curve; curves of different kinds are not blended, see `mixes`."""
         if self.before is None:
             return self.target
         return blend(self.before, self.target, self.progress) if self.mixes else self.before
@@ -43,7 +43,7 @@ class Blend:
     @property
     def mixes(self) -> bool:
         """Whether the two curves can be blended."""
-        return self.before is not None and self.before.closed == self.target.closed
+        return self.before is not None and mixes(self.before, self.target)
 
 
 class PathEditor:
@@ -197,7 +197,7 @@ class PathEditor:
             self.version += 1
 
     def advance(self, seconds: float) -> bool:
-        """Advance the blend; True if the followed curve jumped between open and closed."""
+        """Advance the blend; True if the followed curve jumped to one of another kind."""
         now = self.blend
         if now.before is None:
             return False

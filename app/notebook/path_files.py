@@ -45,10 +45,10 @@ def path_from(
 
     Points are a table with two columns, or with columns named x and y, as any spreadsheet writes
     it; a name may state the unit, as in x_mm. Drawings need `pip install "onpath[svg]"`. Of G-code,
-    what the tool draws is read, and not its travel: see `models/path_files/gcode.py`. Of several
-    lines, the longest is taken.
+    what the tool draws is read, and not its travel: see `models/path_files/gcode.py`. Several
+    lines are drawn one after the other, with the pen raised between them.
 
-    A path has 12 harmonics, and so is smooth: see its `deviation` from the line in the file. Its
+    A path is smooth, and slows for bends: see its `deviation` from the lines in the file. Its
     drawing in a notebook shows both.
 
     Args:
@@ -61,8 +61,9 @@ def path_from(
             the origin.
         corners: "smooth", or "round" to put arcs in the place of corners first.
         radius: of these arcs, [m].
-        closed: whether the end is joined to the beginning; None: as the file says, else closed.
-        part: number of the line in a file with several, from 1, or numbers; None: the longest.
+        closed: whether the end of each line is joined to its beginning; None: as the file says,
+            else a single line is.
+        part: number of the line in a file with several, from 1, or numbers; None: all.
         layer: number of a print's layer, from 1, or name of a drawing's layer; None: the first of
             a print, all of a drawing.
         turn: angle by which it is turned anticlockwise, [degrees].
@@ -72,15 +73,15 @@ def path_from(
         OSError: the file cannot be read.
 
     Warns:
-        UserWarning: which of several lines has been taken, words of G-code without effect, the
-            smallest radius of rounded corners, and a deviation of more than 4 mm.
+        UserWarning: how long the pen is raised, words of G-code without effect, the smallest
+            radius of rounded corners, and a deviation of more than 4 mm.
 
     >>> import onpath, pathlib, tempfile
     >>> file = pathlib.Path(tempfile.mkdtemp(), "square.nc")
     >>> _ = file.write_text("G0 X0 Y0\\nG1 X80\\nY80\\nX0\\nY0")
     >>> path = onpath.path_from(file, centre=(0, 0))
     >>> path, round(path.deviation, 4)
-    (<closed path, 313 mm long, 81 x 81 mm>, 0.0019)
+    (<closed path, 319 mm long, 80 x 80 mm>, 0.0003)
     """
     placing = Placing(
         unit=unit,

@@ -36,6 +36,7 @@ from onpath.models.errors import CodedError
 from onpath.models.path_files.placing import RADIUS, SMOOTH, Placing
 from onpath.models.path_files.reading import path_through
 from onpath.models.paths import curves
+from onpath.models.paths.curve_fit import open_through
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.path_design import PathDesign, presets
 from onpath.models.studies import experiments
@@ -338,17 +339,18 @@ def segment(start: ArrayLike, end: ArrayLike) -> Curve:
         ValueError: non-finite numbers, or start and end coincide.
     """
     form = "a point of the plane, shape (2,), [m]"
-    ends = numbers("start", start, 2, form), numbers("end", end, 2, form)
-    return through(np.stack(ends), closed=False)
+    ends = np.stack([numbers("start", start, 2, form), numbers("end", end, 2, form)])
+    ask_unit("points", ends)
+    return open_through(ends)
 
 
 def through(
     points: ArrayLike, closed: bool = True, *, corners: str = SMOOTH, radius: float = RADIUS
 ) -> Curve:
-    """A smooth path with 12 harmonics that fits points, shape (n, 2), [m].
+    """A smooth path through points, shape (n, 2), [m].
 
     It swings out between points that are far apart: its `deviation` is its largest distance from
-    the straight lines between the points, [m]; beyond 4 mm there is a warning.
+    the straight lines between the points, [m]; beyond 4 mm there is a warning. It slows for bends.
 
     Args:
         points: shape (n, 2), [m].

@@ -26,7 +26,7 @@ from onpath.app.channel.file_messages import (
 )
 from onpath.app.exports.exporter import Delivery, Exporter
 from onpath.app.exports.path_upload import PathReader, Read, Upload
-from onpath.app.lab.commands import FollowCurve
+from onpath.app.lab.commands.path import FollowCurve
 from onpath.app.lab.lab import Command, Lab
 from onpath.lessons.words import Words
 from onpath.models.errors import CodedError, Message
@@ -202,7 +202,7 @@ class PageFiles:
             found = read.found
             if isinstance(found, FollowCurve):
                 self._post(found)
-                self.follows |= not file.again
+                self.follows |= not (file.again or read.why)
             self._news.append(_message(file, read, words))
 
         def refuse(reason: Exception | Message) -> None:
@@ -241,15 +241,15 @@ def _placing(use: PathFile) -> Placing:
 def _message(file: SendFile, read: Read, words: Words) -> FileMessage:
     """What a page is told of a file that was read."""
     refusal = None if isinstance(read.found, FollowCurve) else read.found
+    why = read.why if refusal is None else words.sentence(refusal)
     return FileMessage(
         number=file.number,
-        state="refused" if refusal is not None or read.is_kept else "used",
+        state="refused" if why else "used",
         received=file.size,
-        why=read.why if refusal is None else words.sentence(refusal),
+        why=why,
         lines=tuple(
             tuple(np.rint(1000 * line).astype(int).ravel().tolist()) for line in read.lines
         ),
-        part=read.part,
         helps=tuple(_help(placing, words.sentence(text)) for text, placing in read.helps),
     )
 

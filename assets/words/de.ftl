@@ -632,14 +632,14 @@ design-files = Aus einer Datei
 design-size = Größe [mm]
 design-size_hint = Die längere Seite der Bahn; 0 lässt die Längen, wie sie in der Datei sind
 design-radius = Radius der Ecken [mm]
-design-radius_hint = Bögen mit diesem Radius ersetzen die Ecken; 0: eine glatte Kurve in ihrer Nähe
+design-radius_hint = Bögen mit diesem Radius ersetzen die Ecken; 0: Ecken werden nur so weit gerundet, wie es die Roboter brauchen
 design-open = Offene Bahn
 design-open_hint = Das Ende wird nicht mit dem Anfang verbunden; sonst wie in der Datei, und Punkte werden verbunden
 design-upload = Datei wählen
-design-upload_hint = Punkte (CSV), eine Zeichnung (SVG) oder G-Code, höchstens { $most } MB; man kann sie auch auf die Seite ziehen oder einfügen. Von mehreren Linien wird die längste genommen; wer eine andere will, drückt darauf.
+design-upload_hint = Punkte (CSV), eine Zeichnung (SVG) oder G-Code, höchstens { $most } MB; man kann sie auch auf die Seite ziehen oder einfügen. Alle Linien werden nacheinander gezeichnet; wer nur eine will, drückt darauf.
 design-lines = Die Linien der Datei
 design-part = Linie
-design-part_hint = Welcher Linie der Datei gefolgt wird. Im Bild darauf zu drücken bewirkt dasselbe.
+design-part_hint = Welcher Linie der Datei gefolgt wird; 0: allen. Im Bild auf eine zu drücken bewirkt dasselbe.
 design-turn = Drehung [°]
 design-turn_hint = Gegen den Uhrzeigersinn
 design-right = Mitte, rechts [mm]
@@ -647,8 +647,7 @@ design-right_hint = Wo die Mitte der Bahn liegt, entlang der ersten Achse ihrer 
 design-up = Mitte, oben [mm]
 design-up_hint = Wo die Mitte der Bahn liegt, entlang der zweiten Achse ihrer Ebene
 design-chosen = { $file } wurde zuletzt gewählt. Änderungen wirken sofort darauf.
-design-nearest = Rot ist deine Zeichnung. So kann ihr nicht gefolgt werden: { $reasons }. Die Roboter folgen der nächstliegenden gefundenen Bahn, bis zu { $apart } mm entfernt.
-design-not_near = Rot ist deine Zeichnung. Ihr kann nicht gefolgt werden: { $reasons }. Die Bahn bleibt, wie sie war.
+design-not_followed = Ihr kann nicht gefolgt werden: { $reasons }. Die Stellen sind auf der Bühne markiert; die Bahn bleibt, wie sie war.
 design-larger = Größer: { $size } mm
 design-smaller = Kleiner: { $size } mm
 design-both = Größer, { $size } mm, und Ecken auf { $radius } mm gerundet
@@ -884,6 +883,7 @@ say-slowly_larger = { $robot }: stehen geblieben bei { $time } s: { $reason }. D
 say-refused = Diese Bahn geht nicht: { $reasons }. Die vorige bleibt.
 say-ambiguous = Hinweis: { $reasons }. Diese Gesetze bleiben auf dem Strang, auf dem sie sind; eines, das auf der ganzen Bahn sucht, könnte auf den anderen springen.
 say-deviates = Die Bahn ist glatt: Stellenweise ist sie { $deviation } mm von den Linien zwischen den gegebenen Punkten entfernt.
+say-deviation = Die Bahn weicht höchstens { $deviation } mm von der Zeichnung ab.
 say-no_further = Weiter geht die Bahn nicht: { $reasons }.
 say-level_set_ends = Diese Bahn hat keine Niveaumenge: Quer zu ihr wird wieder der Abstand gemessen.
 say-begun_anew = Mit dieser Änderung haben beide Roboter neu begonnen, am Start.
@@ -1394,6 +1394,7 @@ error-path_too_short = die Bahn ist zu kurz: { $length } mm, mindestens { $least
 error-path_takes_no_numbers = die Bahn { $name } nimmt keine Zahlen
 error-half_a_point = ein halber Punkt: Eine Bahn braucht so viele x wie y
 error-points_out_of_bounds = 2 bis { $most } Punkte, höchstens { $reach } m von der Mitte
+error-no_drawing = die Zahlen der Bahn sind nicht die einer Zeichnung
 error-coefficients = eine gezeichnete Bahn hat { $wanted } Koeffizienten, nicht { $count }
 error-implicit_lines =
     { $count ->
@@ -1520,7 +1521,11 @@ error-log_factor = der Faktor von { $name } ist { $value }: er darf nicht 0 sein
 
 ## Bahnen aus Dateien (models/path_files)
 
-say-one_of_lines = Von { $count } Linien in der Datei wird die längste genommen: { $name }. Eine andere wählst du mit part=1 und so weiter; diese ist part={ $part }.
+say-raised = Der Stift wird { $count ->
+    [one] einmal
+    [2] zweimal
+   *[other] { $count }-mal
+} abgehoben: { $share } % der Zeit.
 say-gcode_words = Diese Befehle der Datei haben keine Wirkung auf die Bahn: { $words }{ $more ->
     [0] .
    *[other] {""} und { $more } weitere.
@@ -2046,7 +2051,7 @@ compare-time = Zeit [s]
 compare-curves = Abstand zur Bahn über der Zeit, wo jede Regelung am schlechtesten ist. Grau: Das Hindernis wirkt.
 setup-draw = Zeichnen
 setup-file = Datei…
-setup-file_hint = Eine Zeichnung (SVG), Punkte (CSV) oder G-Code. Von mehreren Linien wird die längste genommen.
+setup-file_hint = Eine Zeichnung (SVG), Punkte (CSV) oder G-Code. Alle Linien werden nacheinander gezeichnet.
 setup-compare = Gesetze vergleichen…
 
 ## Was an einem Roboter aus einer Datei geschätzt ist

@@ -547,14 +547,14 @@ design-files = From a file
 design-size = Size [mm]
 design-size_hint = The larger side of the path; 0 leaves the lengths as they are in the file
 design-radius = Corners’ radius [mm]
-design-radius_hint = Arcs of this radius take the place of corners; 0: a smooth curve near them
+design-radius_hint = Arcs of this radius take the place of corners; 0: corners are rounded only as much as the robots need
 design-open = Open path
 design-open_hint = The end is not joined to the beginning; otherwise as the file says, and points are joined
 design-upload = Choose a file
-design-upload_hint = Points (CSV), a drawing (SVG) or G-code, at most { $most } MB; you can also drop it on the page or paste it. Of several lines, the longest is taken; press another one to take that.
+design-upload_hint = Points (CSV), a drawing (SVG) or G-code, at most { $most } MB; you can also drop it on the page or paste it. All lines are drawn one after the other; press one to have it alone.
 design-lines = The lines of the file
 design-part = Line
-design-part_hint = Which line of the file is followed. Pressing it in the picture does the same.
+design-part_hint = Which line of the file is followed; 0: all of them. Pressing one in the picture does the same.
 design-turn = Turn [°]
 design-turn_hint = Anticlockwise
 design-right = Middle, right [mm]
@@ -562,8 +562,7 @@ design-right_hint = Where the middle of the path is, along the first axis of its
 design-up = Middle, up [mm]
 design-up_hint = Where the middle of the path is, along the second axis of its plane
 design-chosen = { $file } was chosen last. Changes act on it at once.
-design-nearest = Your drawing is shown in red. It cannot be followed as it is: { $reasons }. The robots follow the nearest path that was found, up to { $apart } mm away.
-design-not_near = Your drawing is shown in red. It cannot be followed: { $reasons }. The path is as it was.
+design-not_followed = It cannot be followed: { $reasons }. The places are marked on the stage; the path is as it was.
 design-larger = Larger: { $size } mm
 design-smaller = Smaller: { $size } mm
 design-both = Larger, { $size } mm, with corners rounded to { $radius } mm
@@ -857,6 +856,7 @@ say-slowly_larger = { $robot } stopped at { $time } s: { $reason }. Its last mom
 say-refused = This path is refused: { $reasons }. The previous one is kept.
 say-ambiguous = Note: { $reasons }. These laws go on along the strand on which they are; one that searched the whole path might jump to the other.
 say-deviates = The path is smooth: at some places it is { $deviation } mm away from the lines between the given points.
+say-deviation = The path keeps within { $deviation } mm of the drawing.
 say-no_further = The path goes no further: { $reasons }.
 say-level_set_ends = This path has no level set: across it, the distance is measured again.
 say-begun_anew = With this change, both robots have restarted.
@@ -994,6 +994,7 @@ error-path_too_short = the path is too short: { $length } mm, at least { $least 
 error-path_takes_no_numbers = the path { $name } takes no numbers
 error-half_a_point = a point is incomplete: a path needs as many values of x as of y
 error-points_out_of_bounds = 2 to { $most } points, within { $reach } m of the middle
+error-no_drawing = the numbers of the path are not those of a drawing
 error-coefficients = a drawn path has { $wanted } coefficients, not { $count }
 error-implicit_lines =
     { $count ->
@@ -1112,7 +1113,11 @@ error-log_factor = the factor of { $name } is { $value }: it must not be 0, and 
 
 ## Paths from files (models/path_files)
 
-say-one_of_lines = Of { $count } lines in the file, the longest is taken: { $name }. Choose another one with part=1 and so on; this one is part={ $part }.
+say-raised = The pen is raised { $count ->
+    [one] once
+    [2] twice
+   *[other] { $count } times
+}: { $share } % of the time.
 say-gcode_words = These codes of the file have no effect on the path: { $words }{ $more ->
     [0] .
    *[other] {""} and { $more } more.
@@ -1638,7 +1643,7 @@ compare-time = time [s]
 compare-curves = Distance to the path over time, where each law is worst. Grey: the obstruction acts.
 setup-draw = Draw
 setup-file = File…
-setup-file_hint = A drawing (SVG), points (CSV) or G-code. Of several lines, the longest is taken.
+setup-file_hint = A drawing (SVG), points (CSV) or G-code. All its lines are drawn, one after the other.
 setup-compare = Compare laws…
 
 ## What is guessed about a robot from a file

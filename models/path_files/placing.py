@@ -1,4 +1,4 @@
-"""Places a line in the plane of a path, and rounds its corners."""
+"""Places the lines of a drawing in the plane of a path, rounds corners, and makes one path."""
 
 from __future__ import annotations
 
@@ -11,8 +11,10 @@ import numpy as np
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
 from onpath.models.path_files.stroke import Stroke
-from onpath.models.paths.curve_fit import along, fitted, with_deviation
+from onpath.models.paths.curve_fit import smooth_through
 from onpath.models.paths.curves import Curve
+from onpath.models.paths.spline_curves import SplineCurve
+from onpath.models.paths.spline_fit import compared, spline_through
 
 LARGEST = 1.0  # [m], of any coordinate
 FLAT = 1e-5  # [m], from a straight line, below which points of a line are no corners
@@ -24,7 +26,7 @@ CORNERED = 500  # corners of a line that are rounded
 
 @dataclass(frozen=True, slots=True)
 class Placing:
-    """What is done with a line of a file before it is a path.
+    """What is done with the lines of a file before they are a path.
 
     Attributes:
         unit: of the numbers in the file, a name of `UNITS`; None: the one that the file states,
@@ -34,8 +36,9 @@ class Placing:
         centre: of its bounding box, [m]; None: where it is, or with `fit` at the origin.
         corners: "smooth", or "round" for arcs of a radius in the place of corners.
         radius: of these arcs, [m].
-        closed: whether its end is joined to its beginning; None: as the file says, else closed.
-        part: numbers of the wanted lines in a file with several, from 1; None: the longest.
+        closed: whether the end of each line is joined to its beginning; None: as the file says,
+            else a single line is.
+        part: numbers of the wanted lines in a file with several, from 1, in their order; None: all.
         layer: number of a print's layer, from 1, or name of a drawing's layer; None: the first of
             a print, all of a drawing.
         turn: angle by which they are turned anticlockwise, [degrees].
@@ -100,20 +103,27 @@ def _box(points: Sequence[Array]) -> tuple[Array, Array]:
     )
 
 
-def curve_of(stroke: Stroke, placing: Placing) -> Curve:
-    """The path of a placed line, with its deviation from it.
+def curve_of(strokes: Sequence[Stroke], placing: Placing) -> SplineCurve:
+    """The path of placed lines, with its deviation from the straight lines between their points.
+
+    A single line is closed unless it is known to be open; of several, those known to be closed.
 
     Raises:
-        CodedError: the line is too short, or has too few points.
+        CodedError: the lines are too short, or have too few points.
     """
-    points, closed = stroke.points, stroke.closed is not False
-    if placing.corners == ROUND:
-        curve = along(rounded(points, closed, placing.radius), closed)
-    elif stroke.straight and len(points) > 2:
-        curve = along(points, closed)
-    else:
-        return fitted(points, closed)
-    return with_deviation(curve, points)
+    single = len(strokes) == 1
+    given, lines = list[Array](), list[Array]()
+    for stroke in strokes:
+        points, closed = stroke.points, stroke.closed is True or (single and stroke.closed is None)
+        line = points
+        if placing.corners == ROUND:
+            line = rounded(points, closed, placing.radius)
+        elif not stroke.straight:
+            line = smooth_through(points, closed)
+        for each, some in ((points, given), (line, lines)):
+            some.append(np.vstack([each, each[:1]]) if closed else each)
+    closed = single and strokes[0].closed is not False
+    return compared(spline_through(lines, closed), given)
 
 
 def rounded(points: Array, closed: bool, radius: float) -> Array:
@@ -203,5 +213,5 @@ def _simplified(points: Array) -> Array:
 
 def least_radius(curve: Curve) -> float:
     """The smallest radius of curvature of a path, [m]; infinite for a line."""
-    most = float(np.abs(curve.curvature(curve.sample(1024))).max())
+    most = float(np.abs(curve.curvature(curve.sample(4 * curve.grid))).max())
     return 1 / most if most > 1e-3 else inf

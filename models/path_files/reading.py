@@ -31,7 +31,7 @@ from onpath.models.path_files.stroke import UNITS, LineDrawing, Stroke, text_of
 from onpath.models.path_files.svg import strokes_of_svg
 from onpath.models.path_files.table import strokes_of_table
 from onpath.models.paths.curve_fit import deviation_remark, distinct
-from onpath.models.paths.curves import Curve
+from onpath.models.paths.curves import PERIOD, Curve
 from onpath.models.studies.path_text import LONGEST_TEXT, curve_from_text, is_described
 from onpath.models.studies.table_file import encoding_of
 from onpath.models.systems.parameter_specs import unknown_name
@@ -50,8 +50,8 @@ class ImportedPath:
 
     Attributes:
         curve: the path.
-        remarks: what the user should know about it: which line was taken, how far the path is
-            from it, the smallest radius of its bends.
+        remarks: what the user should know about it: links with the pen raised, how far the path is
+            from the lines, the smallest radius of its bends.
     """
 
     curve: Curve
@@ -97,9 +97,7 @@ def path_of_drawing(drawing: LineDrawing, placing: Placing) -> ImportedPath:
         CodedError: there is no such path.
     """
     check_placing(placing)
-    chosen, taken = _chosen(drawing.strokes, placing.part)
-    stroke = max(chosen, key=lambda each: each.length)
-    return _path(stroke, placing, [*taken, *drawing.remarks])
+    return _path(_chosen(drawing.strokes, placing.part), placing, [*drawing.remarks])
 
 
 def drawing_of(
@@ -154,12 +152,16 @@ def path_through(points: Array, placing: Placing) -> ImportedPath:
     """
     check_placing(placing)
     distinct(points, least=2)
-    return _path(Stroke(points, placing.closed, straight=False), placing, [])
+    return _path([Stroke(points, placing.closed, straight=False)], placing, [])
 
 
-def _path(stroke: Stroke, placing: Placing, remarks: list[Message]) -> ImportedPath:
-    """The path of a line, with the remarks on it and some more."""
-    curve = curve_of(placed([stroke], placing)[0], placing)
+def _path(strokes: Sequence[Stroke], placing: Placing, remarks: list[Message]) -> ImportedPath:
+    """The path of lines, with the remarks on them and some more."""
+    curve = curve_of(placed(strokes, placing), placing)
+    if curve.raised:
+        time = sum(end - begin for begin, end in curve.raised) / PERIOD
+        count, share = len(curve.raised), f"{100 * time:.0f}"
+        remarks.append(Message("say.raised", {"count": count, "share": share}))
     if placing.corners == ROUND:
         radius = f"{1e3 * least_radius(curve):.1f}"
         remarks.append(Message("say.rounded", {"radius": radius}))
@@ -260,16 +262,8 @@ def _in_units(strokes: list[Stroke], unit: str | None, usual: float) -> list[Str
     return [replace(stroke, points=factor * stroke.points) for stroke in strokes]
 
 
-def taken_lines(drawing: LineDrawing, parts: tuple[int, ...] | None) -> tuple[int, ...]:
-    """The numbers of the lines that become the path, from 1, given the wanted ones."""
-    wanted = parts or range(1, len(drawing.strokes) + 1)
-    return (max(wanted, key=lambda part: drawing.strokes[part - 1].length),)
-
-
-def _chosen(
-    strokes: Sequence[Stroke], parts: tuple[int, ...] | None
-) -> tuple[list[Stroke], list[Message]]:
-    """The lines to follow, and a remark if there are others.
+def _chosen(strokes: Sequence[Stroke], parts: tuple[int, ...] | None) -> Sequence[Stroke]:
+    """The lines to follow.
 
     Raises:
         CodedError: there is no such line.
@@ -277,15 +271,7 @@ def _chosen(
     for part in parts or ():
         if not 1 <= part <= len(strokes):
             raise CodedError("error.file_part", part=str(part), count=len(strokes))
-    if parts is not None:
-        return [strokes[part - 1] for part in parts], []
-    longest = max(range(len(strokes)), key=lambda i: strokes[i].length)
-    stroke = strokes[longest]
-    if len(strokes) == 1:
-        return [stroke], []
-    number, count = str(longest + 1), len(strokes)
-    taken = Message("say.one_of_lines", {"name": stroke.name, "part": number, "count": count})
-    return [stroke], [taken]
+    return strokes if parts is None else [strokes[part - 1] for part in parts]
 
 
 def _remarked(curve: Curve, remarks: list[Message]) -> ImportedPath:

@@ -15,19 +15,29 @@ _ORDER = np.arange(1.0, HARMONICS + 1)
 
 
 def blend(old: Curve, new: Curve, fraction: float) -> Curve:
-    """The curve (1 - fraction) old + fraction new; both are closed, or both open.
+    """The curve (1 - fraction) old + fraction new, which must be of a kind, see `mixes`.
 
-    If one of them is a space curve, the other is taken at height 0. Between a series and a drawing,
-    or drawings with other numbers of pieces, there is none: it is the new curve from the start.
+    If one of them is a space curve, the other is taken at height 0.
     """
-    if type(old) is not type(new) or old.coefficients.shape[:-1] != new.coefficients.shape[:-1]:
-        return new
     d = max(old.dimension, new.dimension)
     old, new = (curve if curve.dimension == d else in_space(curve) for curve in (old, new))
     mixed = (1 - fraction) * old.coefficients + fraction * new.coefficients
     if isinstance(new, SplineCurve):
         return replace(new, points=mixed, given=None, deviation=0.0)
     return SeriesCurve(new.closed, mixed)
+
+
+def mixes(old: Curve, new: Curve) -> bool:
+    """Whether two curves can be blended.
+
+    Both are closed or open, and both series, or the same drawing with other control points.
+    """
+    if old.closed != new.closed or type(old) is not type(new):
+        return False
+    if isinstance(old, SplineCurve) and isinstance(new, SplineCurve):
+        same = old.pieces, old.raised, old.duration
+        return same == (new.pieces, new.raised, new.duration)
+    return True
 
 
 def aligned(curve: SeriesCurve, to: SeriesCurve) -> SeriesCurve:

@@ -25,6 +25,7 @@ C = TypeVar("C", bound=Curve)
 SAMPLES = 256  # points at equal arc length to which a series is fitted
 SHORTEST = 0.02  # [m], shortest total length of a path
 DENSE = 2048  # points that represent a curve or a line
+FINE, DENSEST = 32, 40_000  # points between two given ones, and all of them, of a smooth line
 APART = 1e-4  # [m], least distance of consecutive points
 FAR = 4e-3  # [m], deviation of a curve above which its user is told
 
@@ -87,6 +88,11 @@ def deviation_remark(curve: Curve) -> Message | None:
     return Message("say.deviates", {"deviation": f"{1e3 * curve.deviation:.1f}"})
 
 
+def deviation_of(curve: Curve) -> Message:
+    """How far a curve is from the given points, for the user."""
+    return Message("say.deviation", {"deviation": f"{1e3 * curve.deviation:.2g}"})
+
+
 def along(points: Array, closed: bool) -> SeriesCurve:
     """A curve along the straight lines between points, in their order.
 
@@ -124,6 +130,29 @@ def open_through(points: Array) -> SeriesCurve:
         return chebyshev_curve(np.stack([points.mean(0), (points[1] - points[0]) / 2]))
     spline = _spline_through(points, "natural")
     return _chebyshev_of(_equal_arc(spline, endpoint=True))
+
+
+def smooth_through(points: Array, closed: bool) -> Array:
+    """Points close to each other on a cubic spline through the given ones, shape (n, 2), [m].
+
+    It begins and ends with them; the last point of a closed one is not its first one again.
+
+    Args:
+        points: shape (n, 2), [m].
+        closed: whether the last point is joined to the first.
+
+    Raises:
+        ValueError: see `distinct`.
+    """
+    points = distinct(points, least=3 if closed else 2)
+    if len(points) == 2:
+        return points
+    line = np.vstack([points, points[:1]]) if closed else points
+    spline = _spline_through(line, "periodic" if closed else "natural")
+    each = max(1, min(FINE, DENSEST // len(points)))  # points of an interval
+    at = np.interp(np.arange(each * (len(line) - 1) + 1) / each, np.arange(len(line)), spline.x)
+    smooth = np.asarray(spline(at), dtype=np.float64)
+    return smooth[:-1] if closed else smooth
 
 
 def through_samples(samples: Array, closed: bool) -> SeriesCurve:

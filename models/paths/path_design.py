@@ -1,4 +1,4 @@
-"""Paths as users edit them: a curve with control points, made from presets or freehand strokes.
+"""Paths as users edit them: a curve with control points. Drawings are in drawing_design.py.
 
 A `PathDesign` is immutable; every edit returns a new one.
 """
@@ -6,23 +6,15 @@ A `PathDesign` is immutable; every edit returns a new one.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache, partial
 
 import numpy as np
 
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
-from onpath.models.paths.curve_blend import aligned
-from onpath.models.paths.curve_fit import (
-    along,
-    closed_through,
-    control_points,
-    from_stroke,
-    open_through,
-    with_deviation,
-)
-from onpath.models.paths.curves import Curve, SeriesCurve, circle, ellipse, fourier, segment
+from onpath.models.paths.curve_fit import along, closed_through, control_points, open_through
+from onpath.models.paths.curves import Curve, circle, ellipse, fourier, segment
 
 MOST_POINTS = 24
 USUAL_RADIUS = 0.05  # [m], of the predefined circle
@@ -107,47 +99,6 @@ class PathDesign:
         """Raise ValueError unless `index` is that of a control point."""
         if index not in range(len(self.points)):
             raise CodedError("error.no_point", index=index, count=len(self.points))
-
-
-def drawn(stroke: Array, before: Curve | None = None) -> PathDesign:
-    """A design from a freehand stroke.
-
-    The curve is closed if the ends of the stroke are nearer to each other than a quarter of its
-    length. Its parameter is aligned with that of a circle (closed), or with `before` or a segment
-    to the right (open), whatever the direction of the stroke: the robots keep their direction of
-    travel, and the old path can be blended into the new one.
-
-    Args:
-        stroke: shape (n, 2), [m]; clipped to ±REACH.
-        before: the curve that is replaced.
-
-    Raises:
-        ValueError: the stroke is too short or not finite.
-    """
-    stroke = np.asarray(stroke, dtype=float)
-    if stroke.ndim != 2 or not len(stroke) or not np.all(np.isfinite(stroke)):
-        raise CodedError("error.stroke_not_finite")
-    stroke = np.clip(stroke, -REACH, REACH)
-    length = float(np.linalg.norm(np.diff(stroke, axis=0), axis=1).sum())
-    closed = float(np.linalg.norm(stroke[0] - stroke[-1])) < 0.25 * length
-    rightwards = segment((-0.1, 0.0), (0.1, 0.0))
-    if isinstance(before, SeriesCurve) and not before.closed:
-        rightwards = before
-    curve = aligned(from_stroke(stroke, closed), circle(0.1) if closed else rightwards)
-    return _with_points(with_deviation(curve, stroke))
-
-
-def from_curve(curve: Curve) -> PathDesign:
-    """A design from any plane curve; the parameter of a series is aligned as in `drawn`."""
-    if not isinstance(curve, SeriesCurve):
-        return _with_points(curve)
-    rightwards = segment((-0.1, 0.0), (0.1, 0.0))
-    turned = aligned(curve, circle(0.1) if curve.closed else rightwards)
-    return _with_points(replace(turned, given=curve.given, deviation=curve.deviation))
-
-
-def _with_points(curve: Curve) -> PathDesign:
-    return PathDesign("drawn", curve, control_points(curve, 10 if curve.closed else 6))
 
 
 def _rounded_square(half: float = 0.05, power: float = 5.0) -> Curve:

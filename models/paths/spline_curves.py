@@ -29,6 +29,7 @@ WINDOW = DEGREE + 1  # control points that act on one piece
 MOST_PIECES = 512
 TABLE_POINTS = MOST_PIECES + DEGREE  # columns of `SplineCurve.table`
 PER_PIECE = 4  # points of a grid on each piece
+GRAIN = 1e-6  # [m], of the control points of drawings, so that they can be told in whole numbers
 _GAUSS = np.polynomial.legendre.leggauss(8)  # places in [-1, 1] and weights
 
 
@@ -129,6 +130,11 @@ class SplineCurve(Curve):
         width = PERIOD / self.pieces
         theta = -np.pi + width * (np.arange(self.pieces)[:, None] + (1 + places) / 2)
         return float((np.linalg.norm(self.at(theta, 1), axis=-1) @ weights).sum() * width / 2)
+
+
+def grained(points: Array) -> Array:
+    """The points in whole multiples of `GRAIN`, [m]."""
+    return GRAIN * np.rint(points / GRAIN) + 0.0  # no -0
 
 
 def piece_basis(u: Any, per_radian: Any) -> list[list[Any]]:

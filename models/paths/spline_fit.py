@@ -26,7 +26,7 @@ from onpath.models.errors import CodedError
 from onpath.models.paths.curve_fit import APART, DENSE, apart, check_length
 from onpath.models.paths.curves import PERIOD
 from onpath.models.paths.path_checks import LEAST_RADIUS
-from onpath.models.paths.spline_curves import DEGREE, MOST_PIECES, SplineCurve
+from onpath.models.paths.spline_curves import DEGREE, MOST_PIECES, SplineCurve, grained
 
 ROUNDINGS = ((2e-4, 1.0), (3e-4, 1.1), (4e-4, 1.2), (5e-4, 1.35), (6e-4, 1.5), (8e-4, 2.0))
 """Width of the smoothing, [m], and factor of the caps' radius; the later ones if bends need it."""
@@ -46,6 +46,7 @@ CLOSE = 0.0025  # deviation at which pieces suffice, as a share of the drawing's
 FIRST_PIECES = 24
 DENSITY = 12  # points on each piece
 STIFFNESS = 1e-7  # w, for each point of a piece
+DECIMALS = 4  # of the duration, [s], and of the ends of links, [rad]
 LINK_RADIUS = 2e-3  # [m], least one of a link's arcs
 
 
@@ -64,14 +65,18 @@ class Line:
     closed: bool
 
 
-def spline_through(strokes: Sequence[Array], closed: bool = False) -> SplineCurve:
+def spline_through(
+    strokes: Sequence[Array], closed: bool = False, tremble: float = 0.0
+) -> SplineCurve:
     """The path along strokes in their order; between them the pen is raised.
 
-    It is rounded as little as is needed for bends of `LEAST_RADIUS`.
+    It is rounded as little as is needed for bends of `LEAST_RADIUS`. Its control points are
+    multiples of `GRAIN`, and its times have `DECIMALS`, so that it can be told in whole numbers.
 
     Args:
         strokes: each of shape (n, 2), [m].
         closed: whether a single stroke is joined to its beginning.
+        tremble: width of the smoothing that a line drawn by hand needs at least, [m].
 
     Raises:
         ValueError: points of a wrong shape or not finite, fewer than two of a stroke that are
@@ -83,7 +88,8 @@ def spline_through(strokes: Sequence[Array], closed: bool = False) -> SplineCurv
     sharpest, best = np.inf, None
     for width, factor in ROUNDINGS:
         cap = factor * float(np.clip(0.008 * size, *CAP))
-        line = _joined([_rounded(each, closed, width, cap) for each in lines], closed, size)
+        smooth = max(width, tremble)
+        line = _joined([_rounded(each, closed, smooth, cap) for each in lines], closed, size)
         found = _fitted(line, CLOSE * size)
         bend = _sharpest(found)
         if bend < sharpest:
@@ -91,7 +97,7 @@ def spline_through(strokes: Sequence[Array], closed: bool = False) -> SplineCurv
         if bend <= 1 / LEAST_RADIUS:
             break
     assert best is not None
-    return _compared(best, lines)
+    return compared(best, lines)
 
 
 def _cleaned(strokes: Sequence[Array], closed: bool) -> list[Array]:
@@ -332,8 +338,8 @@ def _in_pieces(line: Line, time: Array, close: float) -> SplineCurve:
         at: Array = np.linspace(0.0, float(time[-1]), DENSITY * pieces + 1)
         z = np.stack([np.interp(at, time, line.points[:, i]) for i in (0, 1)], axis=-1)
         points, there = _least_squares(z, pieces, line.closed)
-        raised, duration = _raised(line.pen, time), float(time[-1])
-        curve = SplineCurve(line.closed, points, raised=raised, duration=duration)
+        raised, duration = _raised(line.pen, time), round(float(time[-1]), DECIMALS)
+        curve = SplineCurve(line.closed, grained(points), raised=raised, duration=duration)
         down = np.interp(at, time, line.pen.astype(float)) > 0.5
         near = float(np.abs(there - z)[down].max()) < close
         if pieces == MOST_PIECES or (near and _sharpest(curve) < 1 / LEAST_RADIUS):
@@ -378,13 +384,17 @@ def _raised(pen: Array, time: Array) -> tuple[tuple[float, float], ...]:
     edges = np.flatnonzero(np.diff(pen.astype(int)))
     theta = -np.pi + PERIOD * time / time[-1]
     return tuple(
-        (float(theta[begin]), float(theta[end + 1]))
+        (round(float(theta[begin]), DECIMALS), round(float(theta[end + 1]), DECIMALS))
         for begin, end in zip(edges[::2], edges[1::2], strict=True)
     )
 
 
-def _compared(curve: SplineCurve, lines: list[Array]) -> SplineCurve:
-    """The curve with the drawing that it was given, and its deviation from it."""
+def compared(curve: SplineCurve, lines: Sequence[Array]) -> SplineCurve:
+    """The curve with the drawing that it was given, and its deviation from it.
+
+    Args:
+        lines: straight between their points, shape (n, 2) each, [m].
+    """
     from scipy.spatial import KDTree
 
     dense = np.vstack([_even(line)[0] for line in lines])

@@ -12,7 +12,9 @@ from onpath.app.lab.setups.capture import capture_path, kept
 from onpath.app.lab.setups.setup import RobotSetup, Setup
 from onpath.models.closed_loop.lab_settings import settings_kept
 from onpath.models.control.settable import specs, value_of
-from onpath.models.paths.path_design import PathDesign, drawn, presets
+from onpath.models.paths.drawing_design import drawn, from_curve
+from onpath.models.paths.path_design import PathDesign, presets
+from onpath.models.paths.spline_fit import spline_through
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameter_specs import Spec
 
@@ -30,6 +32,18 @@ def wave(shape: float, phase: float, closed: bool) -> PathDesign:
     return drawn(np.column_stack([0.06 * t, 0.02 * shape * np.sin(2 * t + phase)]))
 
 
+def word(seed: int) -> PathDesign:
+    """A drawing of some strokes, which may have been bent."""
+    rng = np.random.default_rng(seed)
+    places = 0.03 * np.arange(rng.integers(1, 4))
+    strokes = [rng.uniform(-0.03, 0.03, (4, 2)) + (place, 0) for place in places - places.mean()]
+    design = from_curve(spline_through(strokes))
+    index = int(rng.integers(2 * len(design.points)))
+    if index >= len(design.points):
+        return design
+    return design.moved(index, design.points[index] + rng.uniform(-0.004, 0.004, 2))
+
+
 def _edited(name: str, index: int, dx: float, dy: float) -> PathDesign:
     design = PRESETS[name]
     index %= len(design.points)
@@ -43,6 +57,7 @@ designs = st.one_of(
     _NAMES.map(PRESETS.__getitem__),
     st.builds(_edited, _NAMES, st.integers(0, 23), _MILLIMETRES, _MILLIMETRES),
     st.builds(wave, _UNIT, st.floats(0, 6), st.booleans()),
+    st.builds(word, st.integers(0, 10**6)),
 )
 
 

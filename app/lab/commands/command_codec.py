@@ -90,7 +90,7 @@ def message_of(command: Command) -> dict[str, Any]:
 
 
 def _checked(hint: Any) -> Any:
-    """The type of a field with bounded numbers and texts."""
+    """The type of a field with bounded numbers and texts, unless it states its own bounds."""
     if hint in _CHECKED:
         return _CHECKED[hint]
     origin, kinds = get_origin(hint), get_args(hint)
@@ -104,7 +104,7 @@ def _checked(hint: Any) -> Any:
 
 
 def _struct(command: type[Any]) -> type[msgspec.Struct]:
-    hints, fields = get_type_hints(command), list[Any]()
+    hints, fields = get_type_hints(command, include_extras=True), list[Any]()
     for field in dataclasses.fields(command):
         known = field.default is not dataclasses.MISSING
         kind = _checked(hints[field.name])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from typing_extensions import override
@@ -15,14 +15,13 @@ from onpath.lessons.words import Words
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
 from onpath.models.paths.curve_faults import Fault, ambiguities
-from onpath.models.paths.curve_fit import deviation_remark
-from onpath.models.paths.curves import Curve, from_terms, terms_of
-from onpath.models.paths.path_design import PathDesign, drawn, from_curve
+from onpath.models.paths.curve_fit import deviation_of
+from onpath.models.paths.curves import Curve
+from onpath.models.paths.drawing_design import drawn, from_curve
+from onpath.models.paths.path_design import PathDesign
 from onpath.models.systems.parameter_specs import unknown_name
 
 MOST_STROKE_POINTS = 5000
-LONGEST_REMARK = 1000  # [characters] of a remark on a path
-LARGEST = 10.0  # [m], of any coefficient of a curve
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,68 +169,27 @@ class DrawPath(Command):
         stroke = np.asarray(self.stroke, dtype=float)
         if stroke.ndim != 2 or stroke.shape[1] != 2 or len(stroke) > MOST_STROKE_POINTS:
             raise CodedError("error.stroke_without_points")
-        design = drawn(stroke, lab.simulation.editor.design.curve)
+        design = drawn(stroke)
         commit(lab, design)
-        remark = deviation_remark(design.curve)
-        if remark and lab.simulation.editor.design is design:
-            lab.show_message(lab.words.sentence(remark))
+        _remark(lab, lab.words.sentence(deviation_of(design.curve)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FollowCurve(Command):
-    """Follow a curve from a file, or the nearest one that can be followed.
+    """Follow a plane curve from a file; no page sends it.
 
     Attributes:
-        closed: whether the curves are closed.
-        terms: of the curve, see `Curve.terms`, [m].
-        given: points of the line in the file, shape (n, 2), [m]; None: it is not drawn.
-        deviation: largest distance of the curve from that line, [m].
-        nearest: terms of the nearest curve that can be followed, if this one cannot.
-        apart: largest distance of that one from the line, [m].
+        curve: the path.
         remarks: what the user should know, in the page's language.
     """
 
-    closed: bool
-    terms: Array
-    given: Array | None = None
-    deviation: float = 0.0
-    nearest: Array | None = None
-    apart: float = 0.0
+    curve: Curve
     remarks: str = ""
 
     @override
     def apply(self, lab: Lab) -> None:
-        editor, words = lab.simulation.editor, lab.words
-        curve = self._curve(self.terms)
-        given = None if self.given is None else self._points(self.given)
-        design = from_curve(replace(curve, given=given, deviation=finite(self.deviation)))
-        commit(lab, design)
-        texts, faults = [self.remarks[:LONGEST_REMARK]], editor.faults
-        if faults and self.nearest is not None:
-            other = replace(self._curve(self.nearest), given=given, deviation=finite(self.apart))
-            commit(lab, from_curve(other))
-            if not editor.faults:
-                editor.mark(faults)
-                reasons, apart = _reasons(words, faults), f"{1e3 * self.apart:.1f}"
-                texts.append(words("say.nearest", reasons=reasons, apart=apart))
-        elif faults:
-            return  # the message says why
-        if text := " ".join(filter(None, [*texts, lab.message])):
-            lab.show_message(text, "warning")
-
-    def _curve(self, terms: Array) -> Curve:
-        return from_terms(self.closed, self._points(terms, terms_of(self.closed)))
-
-    @staticmethod
-    def _points(points: Array, count: int | None = None) -> Array:
-        """Finite points within reason, shape (n, 2)."""
-        z = np.asarray(points, dtype=float)
-        most = count or MOST_STROKE_POINTS
-        if z.ndim != 2 or z.shape[1] != 2 or len(z) > most or (count and len(z) != count):
-            raise CodedError("error.stroke_without_points")
-        if not np.all(np.abs(z) <= LARGEST):  # NaN fails too
-            raise CodedError("error.stroke_not_finite")
-        return z
+        commit(lab, from_curve(self.curve))
+        _remark(lab, self.remarks)
 
 
 @dataclass(frozen=True, slots=True)
@@ -258,6 +216,13 @@ def commit(lab: Lab, design: PathDesign) -> None:
     """Apply a complete edit; if it is refused, show why."""
     lab.simulation.editor.propose(design)
     _end(lab, "say.refused")
+
+
+def _remark(lab: Lab, text: str) -> None:
+    """Add a remark to what the user is told of an edit, unless it is refused."""
+    if not lab.simulation.editor.faults:
+        told = " ".join(filter(None, [text, lab.message]))
+        lab.show_message(told, lab.message_level)
 
 
 def finish(lab: Lab) -> None:

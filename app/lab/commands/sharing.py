@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
+import msgspec
 from typing_extensions import override
 
 from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.setups.capture import capture
-from onpath.app.lab.setups.share_code import decode, encode
+from onpath.app.lab.setups.share_code import LONGEST_TEXT, decode, encode
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +26,7 @@ class Share(Command):
 class UseShared(Command):
     """Set the lab up from a share code."""
 
-    text: str
+    text: Annotated[str, msgspec.Meta(max_length=LONGEST_TEXT)]
 
     @override
     def apply(self, lab: Lab) -> None:

@@ -10,13 +10,24 @@ import numpy as np
 
 from onpath.app.common.robot_files import given_file
 from onpath.app.lab.robot_settings import RobotSettings
-from onpath.app.lab.setups.setup import DRAWN, EDITED, LONGEST_WORD, UNIT, Path, RobotSetup, Setup
+from onpath.app.lab.setups.setup import (
+    DRAWING,
+    DRAWN,
+    EDITED,
+    LONGEST_WORD,
+    UNIT,
+    Path,
+    RobotSetup,
+    Setup,
+)
 from onpath.app.lab.simulation import Simulation
 from onpath.models.closed_loop.lab_settings import Kept, LabSettings, settings_kept
 from onpath.models.control.settable import specs, values_of
 from onpath.models.control.sides import DEFAULT_LAWS
 from onpath.models.paths.curves import SeriesCurve
 from onpath.models.paths.path_design import PathDesign
+from onpath.models.paths.spline_curves import SplineCurve
+from onpath.models.paths.spline_fit import DECIMALS
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameter_specs import NOTHING, Spec
 from onpath.models.systems.parameters import Parameters
@@ -92,11 +103,20 @@ def capture_path(design: PathDesign, paths: Mapping[str, PathDesign]) -> Path:
     """Convert a path to data, given the presets."""
     if design.name in paths:
         return Path(design.name)
-    closed = design.curve.closed
+    curve, closed = design.curve, design.curve.closed
+    if isinstance(curve, SplineCurve):
+        beginning = np.zeros((2, 2))
+        return Path(
+            name=DRAWING,
+            closed=closed,
+            numbers=_lengths(np.diff(curve.points, n=2, axis=0, prepend=beginning)),
+            raised=tuple(round(end * 10**DECIMALS) for link in curve.raised for end in link),
+            duration=round(curve.duration * 10**DECIMALS),
+        )
     if design.name == EDITED:
         return Path(EDITED, closed, _lengths(design.points))
-    assert isinstance(design.curve, SeriesCurve)
-    return Path(DRAWN, closed, _lengths(design.curve.terms()))
+    assert isinstance(curve, SeriesCurve)
+    return Path(DRAWN, closed, _lengths(curve.terms()))
 
 
 def _lengths(z: np.ndarray) -> tuple[int, ...]:

@@ -6,6 +6,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import msgspec
@@ -13,6 +14,7 @@ import numpy as np
 
 from onpath.app.common.robot_files import to_type
 from onpath.app.lab.setups.setup import (
+    DRAWING,
     DRAWN,
     EDITED,
     LONGEST_WORD,
@@ -28,10 +30,14 @@ from onpath.models.closed_loop.start import ON_PATH, check_start
 from onpath.models.control.settable import changed
 from onpath.models.control.sides import checked_laws
 from onpath.models.errors import CodedError, Message
+from onpath.models.path_files.placing import LARGEST
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curve_fit import closed_through, control_points, open_through
 from onpath.models.paths.curves import Curve, from_terms, terms_of
+from onpath.models.paths.drawing_design import from_curve
 from onpath.models.paths.path_design import MOST_POINTS, REACH, PathDesign, presets
+from onpath.models.paths.spline_curves import GRAIN, SplineCurve
+from onpath.models.paths.spline_fit import DECIMALS
 from onpath.models.robot_files.xml_elements import shown
 from onpath.models.systems.catalogue import ROBOTS, RobotEntry
 from onpath.models.systems.parameter_specs import NOTHING, unknown_name
@@ -131,14 +137,16 @@ def own_settings(
 
 
 def _design(path: Path, paths: Mapping[str, PathDesign]) -> PathDesign:
-    if path.name not in (EDITED, DRAWN):
+    if path.name not in (EDITED, DRAWN, DRAWING):
         if path.name not in paths:
-            raise unknown_name(path.name, [*paths, EDITED, DRAWN], "path")
+            raise unknown_name(path.name, [*paths, EDITED, DRAWN, DRAWING], "path")
         if path.numbers:
             raise CodedError("error.path_takes_no_numbers", name=repr(path.name))
         return paths[path.name]
     if len(path.numbers) % 2:
         raise CodedError("error.half_a_point")
+    if path.name == DRAWING:
+        return from_curve(_drawing(path))
     z = UNIT * np.array(path.numbers, dtype=float).reshape(-1, 2)
     if path.name == EDITED:
         if not 2 <= len(z) <= MOST_POINTS or np.abs(z).max(initial=0.0) > REACH + UNIT / 2:
@@ -148,3 +156,23 @@ def _design(path: Path, paths: Mapping[str, PathDesign]) -> PathDesign:
         raise CodedError("error.coefficients", wanted=terms_of(path.closed), count=len(z))
     curve = from_terms(path.closed, z)
     return PathDesign(DRAWN, curve, control_points(curve, DRAWN_POINTS[path.closed]))
+
+
+def _drawing(path: Path) -> SplineCurve:
+    """The curve of a drawing, to the last bit of the one that was captured.
+
+    Raises:
+        ValueError: the numbers are not those of a drawing.
+    """
+    points = np.array(path.numbers, dtype=int).reshape(-1, 2).cumsum(axis=0).cumsum(axis=0)
+    ends = [end / 10**DECIMALS for end in path.raised]
+    rises = all(a <= b for a, b in pairwise([-np.pi, *ends, np.pi]))
+    far = np.abs(points).max(initial=0) > LARGEST / GRAIN
+    if far or path.duration == 0 or len(ends) % 2 or not rises:
+        raise CodedError("error.no_drawing")
+    return SplineCurve(
+        path.closed,
+        GRAIN * points,
+        raised=tuple(zip(ends[::2], ends[1::2], strict=True)),
+        duration=path.duration / 10**DECIMALS,
+    )

@@ -13,12 +13,12 @@ import msgspec
 
 from onpath.models.control.laws.expressions import LONGEST
 from onpath.models.control.sides import SIDES
-from onpath.models.paths.curves import TERMS
-from onpath.models.paths.path_design import MOST_POINTS
+from onpath.models.paths.spline_curves import TABLE_POINTS
 from onpath.models.systems.catalogue import FIVE_BAR
 
 UNIT = 1e-6  # [m], unit of the numbers of a path
-EDITED, DRAWN = "edited", "drawn"  # names of paths that are not presets
+EDITED, DRAWN, DRAWING = "edited", "drawn", "drawing"  # names of paths that are not presets
+MOST_LINKS = 512  # of a drawing
 
 Word = Annotated[str, msgspec.Meta(max_length=40, pattern=r"^[A-Za-z0-9_ -]*$")]
 LawName = Annotated[str, msgspec.Meta(max_length=LONGEST)]
@@ -28,22 +28,29 @@ FileWord = Annotated[str, msgspec.Meta(max_length=LONGEST_WORD)]
 """A name that is only shown."""
 Values = Annotated[dict[Word, bool | int | float | Word], msgspec.Meta(max_length=100)]
 Length = Annotated[int, msgspec.Meta(ge=-1_000_000, le=1_000_000)]
-Lengths = Annotated[tuple[Length, ...], msgspec.Meta(max_length=2 * max(TERMS, MOST_POINTS))]
+Lengths = Annotated[tuple[Length, ...], msgspec.Meta(max_length=2 * TABLE_POINTS)]
+Times = Annotated[int, msgspec.Meta(ge=-1_000_000, le=1_000_000)]
+Links = Annotated[tuple[Times, ...], msgspec.Meta(max_length=2 * MOST_LINKS)]
 
 
 class Path(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Path of a set-up.
 
     Attributes:
-        name: of a preset, or "edited" or "drawn".
+        name: of a preset, or "edited", "drawn" or "drawing".
         closed: whether an edited or drawn path is closed.
         numbers: alternating x and y, [UNIT]: control points of an edited path, coefficients of a
-            drawn path in the order of `Curve.series`; empty for a preset.
+            drawn path in the order of `Curve.series`, of a drawing's control points the second
+            differences, the first one beginning at 0; empty for a preset.
+        raised: of a drawing, `SplineCurve.raised` in whole 10^-`DECIMALS` rad.
+        duration: of a drawing, `SplineCurve.duration` in whole 10^-`DECIMALS` s.
     """
 
     name: Word = "circle"
     closed: bool = True
     numbers: Lengths = ()
+    raised: Links = ()
+    duration: Annotated[int, msgspec.Meta(ge=0, le=100_000_000)] = 0
 
 
 class RobotSetup(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

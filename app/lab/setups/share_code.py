@@ -20,7 +20,7 @@ from onpath.models.errors import CodedError, message_of
 
 VERSION = 1
 LONGEST_TEXT = 50_000  # maximum input, [characters]
-LARGEST = 20_000  # maximum size of an inflated set-up, [B]
+LARGEST = 100_000  # maximum size of an inflated set-up, [B]
 _CODE = re.compile(r"ONPATH([0-9]{1,6})-([A-Z2-7]*)-([A-Z2-7]{7})", re.ASCII | re.IGNORECASE)
 _BEGINNING = re.compile(r"ONPATH([0-9]{1,6})-", re.ASCII | re.IGNORECASE)
 _BETWEEN = re.compile(r"[^A-Za-z0-9-]+")  # what mails insert to break lines, and quotes

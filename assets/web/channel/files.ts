@@ -12,11 +12,11 @@ export interface Download extends Pick<DownloadMessage, "number" | "name" | "tex
 }
 
 /** What became of a file that was sent; `state` is empty if it was given up. */
-export interface Answer extends Pick<FileMessage, "why" | "lines" | "part" | "helps"> {
+export interface Answer extends Pick<FileMessage, "why" | "lines" | "helps"> {
     state: "used" | "refused" | ""
 }
 
-const GIVEN_UP: Answer = { state: "", why: "", lines: [], part: 0, helps: [] }
+const GIVEN_UP: Answer = { state: "", why: "", lines: [], helps: [] }
 
 interface Upload {
     begin: SendFile

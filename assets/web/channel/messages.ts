@@ -154,7 +154,7 @@ export interface PathFile {
     right?: number
     /** coordinates of its middle in the plane of the path, [mm]. */
     up?: number
-    /** number of the wanted line of the file, from 1; 0: the longest. */
+    /** number of the wanted line of the file, from 1; 0: all of them. */
     part?: number
 }
 
@@ -297,7 +297,6 @@ export type Command =
     | { do: "DrawPath"; stroke: number[] | number[][] }
     | { do: "EndMove" }
     | { do: "FinishLesson" }
-    | { do: "FollowCurve"; closed: boolean; terms: number[] | number[][]; given?: number[] | number[][] | null; deviation?: number; nearest?: number[] | number[][] | null; apart?: number; remarks?: string }
     | { do: "FollowRoute"; name: string }
     | { do: "GoOn" }
     | { do: "GoToStep"; by: number }
@@ -597,12 +596,10 @@ export interface FileMessage {
     state: "awaited" | "reading" | "refused" | "used"
     /** how much has come, [B]. */
     received: number
-    /** it is refused, or what is followed is only near it: a sentence in the page's language; else empty. */
+    /** it is refused, in a sentence in the page's language; else empty. */
     why: string
     /** those in the file as they lie in it, each x, y, x, y, … from 0 to 1000; y points up. */
     lines: number[][]
-    /** number of the line that was taken, from 1; 0: none. */
-    part: number
     /** what would help. */
     helps: PathHelp[]
 }

@@ -21,10 +21,9 @@ export interface ChosenFile {
     file: File | null
     use: PathFile
     lines: FileMessage["lines"]
-    part: number
 }
 
-export const noFile = (): ChosenFile => ({ file: null, use: USUAL, lines: [], part: 0 })
+export const noFile = (): ChosenFile => ({ file: null, use: USUAL, lines: [] })
 
 /** A sheet that takes a file, or has been given one. */
 export function pathFromFile(texts: Texts, files: Files, chosen: ChosenFile, dropped?: File): SheetDialog {
@@ -37,7 +36,7 @@ export function pathFromFile(texts: Texts, files: Files, chosen: ChosenFile, dro
         return { box, label: made("label", "row", made("span", "", phrase(texts, `design.${key}`)), box) }
     }
     const fields = Object.fromEntries(NAMES.map(name => [name, number(name, NUMBERS[name])])) as Record<NumberName, ReturnType<typeof number>>
-    const part = number("part", [1, 1, 1])
+    const part = number("part", [0, 0, 1])
     const opened = switchInput({ title: phrase(texts, "design.open_hint") })
     opened.addEventListener("change", () => void follow())
     const chooser = Object.assign(made("input", ""), { type: "file", accept: KINDS, hidden: true })
@@ -80,7 +79,7 @@ export function pathFromFile(texts: Texts, files: Files, chosen: ChosenFile, dro
     }
     const show = (answer: Answer) => {
         const isFollowed = answer.state === "used"
-        if (answer.lines.length) [chosen.lines, chosen.part] = [answer.lines, answer.part || chosen.part]
+        if (answer.lines.length) chosen.lines = answer.lines
         draw()
         tell(state, isFollowed ? phrase(texts, "design.followed", { file: chosen.file!.name }) : "")
         refuse(refusal, answer.why)
@@ -92,14 +91,14 @@ export function pathFromFile(texts: Texts, files: Files, chosen: ChosenFile, dro
     }
     /** Draw the lines of the file. */
     const draw = () => {
-        const { lines } = chosen, isOne = lines.length < 2
+        const { lines, use: { part: taken } } = chosen, isOne = lines.length < 2
         part.label.hidden = isOne
-        part.box.max = String(Math.max(lines.length, 1))
-        part.box.valueAsNumber = chosen.part || 1
+        part.box.max = String(lines.length)
+        part.box.valueAsNumber = taken
         picture.style.display = lines.length ? "" : "none"
         picture.classList.toggle("many", !isOne)
         picture.replaceChildren(...lines.map((line, i) => svg("polyline", {
-            points: line.map((each, k) => (k % 2 ? SIZE - each : each)).join(" "), class: i + 1 === chosen.part ? "taken" : "",
+            points: line.map((each, k) => (k % 2 ? SIZE - each : each)).join(" "), class: !taken || i + 1 === taken ? "taken" : "",
         })))
     }
     picture.addEventListener("click", ({ clientX, clientY }) => {
@@ -107,12 +106,13 @@ export function pathFromFile(texts: Texts, files: Files, chosen: ChosenFile, dro
         const { left, top, width, height } = picture.getBoundingClientRect()
         const scale = (SIZE + 2 * MARGIN) / Math.min(width, height)
         const at = [(clientX - left - width / 2) * scale + SIZE / 2, SIZE / 2 - (clientY - top - height / 2) * scale] as const
-        part.box.valueAsNumber = nearest(chosen.lines, at) + 1
+        const wanted = nearest(chosen.lines, at) + 1
+        part.box.valueAsNumber = wanted === chosen.use.part ? 0 : wanted // once more: all again
         void follow()
     })
     const take = (file: File | undefined) => {
         if (!file || isBusy) return
-        Object.assign(chosen, { file, lines: [], part: 0 })
+        Object.assign(chosen, { file, lines: [] })
         draw()
         void follow()
     }

@@ -119,11 +119,11 @@ def test_a_path_of_another_program_is_the_same_in_every_command(
 def test_what_cannot_be_followed_is_told_and_the_nearest_path_is_taken_if_asked_for(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    file = tmp_path / "small.nc"
-    file.write_text("G0 X0 Y0\nG1 X30\nY30\nX0\nY0\n", "utf-8")
+    file = tmp_path / "large.nc"
+    file.write_text("G0 X-200 Y-200\nG1 X200\nY200\nX-200\nY-200\n", "utf-8")
     assert run_command([*SHORT, "--path", f"@{file}"]) == 2
     told = capsys.readouterr().err
-    assert "bends too sharply" in told and "add the word nearest" in told
+    assert "leaves the workspace" in told and "add the word nearest" in told
     assert run_command([*SHORT, "--json", "--path", f"@{file} nearest"]) == 0
     said = capsys.readouterr()
     assert "follow the nearest path" in said.err and json.loads(said.out)["laws"]

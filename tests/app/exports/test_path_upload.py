@@ -16,11 +16,13 @@ from onpath.app.exports import path_upload
 from onpath.app.exports.export_process import ExportProcess
 from onpath.app.exports.path_upload import PathReader, Read, Upload
 from onpath.app.lab import commands as c
+from onpath.app.lab.commands.path import FollowCurve
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.lessons.words import ENGLISH
 from onpath.models.errors import Message
 from onpath.models.path_files.placing import ROUND, Placing
-from onpath.models.paths.curve_faults import curve_faults
+from onpath.models.paths.curves import circle
+from onpath.models.paths.spline_curves import SplineCurve
 from onpath.models.systems.catalogue import FIVE_BAR
 from tests.support.lab import do, new_lab, run
 
@@ -78,6 +80,11 @@ def stopped() -> Iterator[None]:
 SIZED = Placing(fit=0.1)
 
 
+def command(found: Read) -> FollowCurve:
+    assert isinstance(found.found, FollowCurve)
+    return found.found
+
+
 def read(content: bytes, name: str, placing: Placing = SIZED) -> Read:
     """What was read, in this process."""
     upload = Upload(name, content, placing, FIVE_BAR.name, FIVE_BAR.parameters())
@@ -107,7 +114,7 @@ def test_a_hostile_file_is_refused_in_words_and_the_next_one_is_read(case: str) 
     assert "Traceback" not in text and "\n" not in text and len(text) < 300
     assert re.search(words, text), text
     good = answer(b"0,0\n4,0\n4,3\n0,3\n", "a.csv")
-    assert isinstance(good, c.FollowCurve)
+    assert isinstance(good, FollowCurve)
 
 
 CORNERS = b"0,0\n1,1\n0,1\n" * 11_000
@@ -158,7 +165,7 @@ def test_a_tab_reads_one_file_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None
     class Slow:
         def call(self, *_: Any) -> Any:
             hold.wait(WAIT)
-            return Read(c.FollowCurve(True, np.zeros((25, 2))))
+            return Read(FollowCurve(circle(0.05)))
 
     monkeypatch.setattr(path_upload, "process", Slow())
     upload = Upload("a.csv", b"0,0", Placing(), FIVE_BAR.name, FIVE_BAR.parameters())
@@ -169,39 +176,30 @@ def test_a_tab_reads_one_file_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None
     assert done.wait(WAIT)
 
 
-@pytest.mark.thorough
-def test_the_lab_follows_the_path_of_a_file_and_draws_the_line_if_it_is_far() -> None:
+def test_the_lab_follows_all_lines_of_a_file_and_tells_of_them() -> None:
     lab = new_lab(0.2)
-    do(lab, answer(b"0,0\n4,0\n4,4\n0,4\n", "a.csv", Placing(fit=0.1, corners=ROUND, radius=0.02)))
+    do(lab, command(read(LINES, "a.svg")))
     design = lab.simulation.editor.design
     assert design.name == "drawn" and not lab.simulation.editor.faults
-    assert "tightest bend" in lab.message and "mm away from the lines" in lab.message
-    assert len(take_page_snapshot(lab, 1.0).path.given) > 4
+    assert "keeps within 0." in lab.message and "raised twice" in lab.message
     run(lab, 1.0)
     assert all(each.diverged is None for each in lab.simulation.runs.values())
-    do(lab, c.Undo())
-    assert not len(take_page_snapshot(lab, 1.0).path.given)
 
 
-def test_what_cannot_be_followed_is_red_and_the_nearest_that_can_is_followed() -> None:
+@pytest.mark.parametrize("placing", [Placing(fit=0.4), Placing(fit=0.1, centre=(0.2, 0.0))])
+def test_what_cannot_be_followed_is_marked_where_and_the_old_path_kept(placing: Placing) -> None:
     lab = new_lab(0.2)
-    do(lab, answer(b"G0 X0 Y0\nG1 X30\nY30\nX0\nY0\n", "a.nc"))
-    editor, snapshot = lab.simulation.editor, take_page_snapshot(lab, 1.0)
-    assert not curve_faults(lab.simulation.robot.margin, editor.design.curve)
-    assert "bends too sharply" in lab.message and "nearest path" in lab.message
-    assert len(snapshot.path.refused)
-    run(lab, 1.0)
-    assert all(each.diverged is None for each in lab.simulation.runs.values())
-    do(lab, c.MovePoint(0, editor.design.points[0] + 1e-3))
-    assert not len(take_page_snapshot(lab, 1.0).path.refused)
-
-
-def test_what_nothing_near_could_follow_is_refused_and_the_old_path_kept() -> None:
-    lab = new_lab(0.2)
-    before = lab.simulation.editor.design
-    do(lab, answer(b"0,0\n1,0.001\n2,0\n1,-0.001\n", "a.csv"))
+    before, found = lab.simulation.editor.design, read(LINES, "a.svg", placing)
+    assert "cannot be followed" in found.why
+    do(lab, command(found))
     assert lab.simulation.editor.design is before and "refused" in lab.message
-    assert len(take_page_snapshot(lab, 1.0).path.refused)
+    refused = take_page_snapshot(lab, 1.0).path.refused
+    robot, curve = lab.simulation.robot, command(found).curve
+    places = robot.position(robot.frame.lift(curve.at(curve.sample(4 * curve.grid))))
+    assert len(refused)
+    assert all(np.linalg.norm(places - place, axis=1).min() < 1e-3 for place in refused)
+    do(lab, c.MovePoint(0, before.points[0] + 1e-3))
+    assert not len(take_page_snapshot(lab, 1.0).path.refused)
 
 
 LINES = b"""<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 90 90">
@@ -210,19 +208,21 @@ LINES = b"""<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 90 90">
 
 
 def test_all_lines_are_shown_as_they_lie_in_the_file_and_any_can_be_taken() -> None:
-    longest = read(LINES, "a.svg")
-    assert len(longest.lines) == 3 and longest.part == 2 and not longest.helps
-    low = np.min([line.min(0) for line in longest.lines], axis=0)
-    high = np.max([line.max(0) for line in longest.lines], axis=0)
+    every = read(LINES, "a.svg")
+    assert len(every.lines) == 3 and not every.helps
+    low = np.min([line.min(0) for line in every.lines], axis=0)
+    high = np.max([line.max(0) for line in every.lines], axis=0)
     assert low == pytest.approx([0, 0]) and high.max() == pytest.approx(1)
-    middles = np.array([line.mean(0) for line in longest.lines])
+    middles = np.array([line.mean(0) for line in every.lines])
     assert middles[0, 1] > middles[1, 1] and middles[0, 0] < middles[1, 0]  # y points up
-    assert read(LINES, "a.svg", Placing(fit=0.1, part=(3,))).part == 3
+    for part, count in (((3,), 0), ((3, 1), 1), (None, 2)):
+        curve = command(read(LINES, "a.svg", Placing(fit=0.1, part=part))).curve
+        assert isinstance(curve, SplineCurve) and len(curve.raised) == count
     none = read(LINES, "a.svg", Placing(fit=0.1, part=(4,)))
     assert isinstance(none.found, Message) and len(none.lines) == 3
 
 
-@pytest.mark.parametrize(("size", "sides"), [(0.03, 4), (0.04, 4), (0.05, 3), (0.06, 6), (None, 5)])
+@pytest.mark.parametrize(("size", "sides"), [(0.3, 4), (0.4, 3)])
 def test_what_is_said_to_help_does(size: float | None, sides: int) -> None:
     angles = np.linspace(0, 2 * np.pi, sides + 1) + 0.3
     points = 20 * np.column_stack([np.cos(angles), np.sin(angles)])
@@ -233,7 +233,7 @@ def test_what_is_said_to_help_does(size: float | None, sides: int) -> None:
     assert found.why and found.helps
     for text, placing in found.helps:
         again = read(content, "a.nc", placing)
-        assert isinstance(again.found, c.FollowCurve) and not again.why, text
+        assert isinstance(again.found, FollowCurve) and not again.why, text
 
 
 def test_undo_takes_back_an_upload_and_each_change_of_its_placing_as_one_step() -> None:
@@ -241,9 +241,7 @@ def test_undo_takes_back_an_upload_and_each_change_of_its_placing_as_one_step() 
     editor = lab.simulation.editor
     for size in (0.06, 0.08, 0.1):
         designs.append(editor.design)
-        command = read(LINES, "a.svg", Placing(fit=size)).found
-        assert isinstance(command, c.FollowCurve)
-        do(lab, command)
+        do(lab, command(read(LINES, "a.svg", Placing(fit=size))))
     for design in reversed(designs):
         do(lab, c.Undo())
         assert editor.design is design

@@ -18,10 +18,13 @@ from onpath.app.common.access_codes import ALPHABET, as_meant, new_code, normali
 from onpath.app.lab.commands import DrawPath, Set, UseShared
 from onpath.app.lab.setups import share_code
 from onpath.app.lab.setups.capture import capture, capture_path
-from onpath.app.lab.setups.setup import Setup
-from onpath.app.lab.setups.share_code import decode, encode
+from onpath.app.lab.setups.setup import RobotSetup, Setup, plain
+from onpath.app.lab.setups.share_code import LONGEST_TEXT, decode, encode
 from onpath.models.control.settable import specs
+from onpath.models.paths.drawing_design import from_curve
+from onpath.models.paths.spline_curves import MOST_PIECES
 from onpath.models.systems.catalogue import ROBOTS
+from tests.support.drawings import random_drawing
 from tests.support.lab import do, new_lab
 from tests.support.some_setups import CALM, PRESETS, setups, wave
 
@@ -61,7 +64,9 @@ def test_round_trip(setup: Setup) -> None:
 def test_codes_are_short() -> None:
     assert len(encode(Setup())) < 40
     assert len(encode(capture(new_lab().simulation))) < 60
-    assert len(encode(drawn_lab())) < 300
+    assert len(encode(drawn_lab())) < 400
+    path = capture_path(from_curve(random_drawing(3, pieces=220)), PRESETS)
+    assert len(encode(Setup(robots={"five_bar": RobotSetup(path=path)}))) < 2000
 
 
 def test_codes_of_version_1_stay_readable() -> None:
@@ -232,20 +237,21 @@ def test_random_text(text: str) -> None:
 
 
 def test_the_fullest_lab_fits() -> None:
-    path = capture_path(wave(0.9, 0.3, closed=True), PRESETS)
+    path = capture_path(from_curve(random_drawing(1, pieces=MOST_PIECES)), PRESETS)
     full = {
         name: {
             "parameters": {
                 field: spec.options[0] if spec.options else spec.low + 0.123456 * spec.high
                 for field, spec in specs(entry.parameters()).items()
             },
-            "path": {"name": "drawn", "numbers": list(path.numbers)},
+            "path": plain(path),
         }
         for name, entry in ROBOTS.items()
     }
     code = forged({"benches": full, "robot": "flexible", "rate": 0.25, "copy": False})
     assert len(decode(code).robots) == len(ROBOTS)
-    assert len(encode(decode(code))) < 3000
+    again = encode(decode(code))
+    assert len(again) < LONGEST_TEXT and decode(again) == decode(code)
 
 
 def test_session_codes_are_forgiving_and_unambiguous() -> None:

@@ -50,9 +50,6 @@ WILD = st.one_of(
 INDICES = st.one_of(st.none(), st.integers(-3, 30))
 
 
-EIGHT = presets()["figure of eight"].curve.coefficients[0]
-
-
 def points(most: int) -> st.SearchStrategy[np.ndarray]:
     """Arrays of points, mostly of the right shape."""
     size = st.sampled_from([2, 2, 2, 2, 3, 0])
@@ -160,16 +157,6 @@ COMMANDS: dict[type, st.SearchStrategy[Any]] = {
     c.AddPoint: st.builds(c.AddPoint),
     c.RemovePoint: st.builds(c.RemovePoint),
     c.DrawPath: st.builds(c.DrawPath, st.one_of(points(6), circles(), circles())),
-    c.FollowCurve: st.builds(
-        c.FollowCurve,
-        st.booleans(),
-        st.one_of(points(3), st.sampled_from([EIGHT, 9 * EIGHT, 0.1 * EIGHT])),
-        st.one_of(st.none(), points(6)),
-        WILD,
-        st.one_of(st.none(), st.just(EIGHT), points(3)),
-        WILD,
-        st.text(),
-    ),
     c.Undo: st.builds(c.Undo),
     c.Redo: st.builds(c.Redo),
     c.Share: st.builds(c.Share),
@@ -564,11 +551,12 @@ def ring(lab: Lab, phase: float, sense: int) -> np.ndarray:
 def test_the_same_circle_drawn_anyhow_disturbs_nobody(phase: float, sense: int) -> None:
     lab = new_lab(1.0)
     do(lab, c.DrawPath(ring(lab, phase, sense)))
-    assert lab.simulation.editor.design.name == "drawn" and lab.message == ""
+    assert lab.simulation.editor.design.name == "drawn" and "keeps within 0.0" in lab.message
     before = {name: run_.max_distance for name, run_ in lab.simulation.runs.items()}
     run(lab, 1.0)
     for name, run_ in lab.simulation.runs.items():
-        assert run_.max_distance < before[name] + 1.5e-3
+        turning = 0.0 if sense == 1 else 1e-3  # where it was drawn clockwise, they turn round
+        assert run_.max_distance < before[name] + 1.5e-3 + turning
         assert run_.shown()["theta_rate"][0] > 5  # and goes on in its direction
 
 

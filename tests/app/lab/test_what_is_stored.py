@@ -196,7 +196,6 @@ NAMES: dict[str, st.SearchStrategy[Any]] = {
     "times": st.just(()) | CURVES,
     "values": st.just(()) | CURVES,
     "stroke": LINES,
-    "terms": LINES,
     "given": NUMBERS,
     "actions": st.just(()),
 }
@@ -220,8 +219,6 @@ def values_of(command: type[Any], field: dataclasses.Field[Any]) -> st.SearchStr
     }
     if field.name == "name":
         return st.sampled_from(names[command])
-    if command is c.FollowCurve and field.name == "given":
-        return LINES
     kind, *maybe = str(field.type).split(" | ")
     found = NAMES[field.name] if field.name in NAMES else BY_TYPE[kind]
     return st.none() | found if maybe else found

@@ -25,6 +25,7 @@ from onpath.models.path_files.reading import (
 )
 from onpath.models.path_files.stroke import MOST_POINTS
 from onpath.models.paths.curves import circle, ellipse
+from onpath.models.paths.spline_curves import SplineCurve
 
 pytest.importorskip("svgpathtools")
 
@@ -294,13 +295,18 @@ def test_ends_of_an_open_path_are_kept() -> None:
         assert not curve.closed and np.abs(ends - bent[[0, 2]]).max() < 2e-3
 
 
-def test_of_several_lines_the_longest_is_taken_and_told() -> None:
+def test_all_lines_are_drawn_in_their_order_or_those_that_are_wanted_in_theirs() -> None:
     two = TOOL + "G0 X0 Y0\nG2 X0 Y0 I10 J0\n"
-    found = read(two, "a.nc")
-    assert same(found, read(TOOL, "a.nc")) or np.allclose(
-        found.curve.coefficients, read(TOOL, "a.nc").curve.coefficients
-    )
-    assert "Of 2 lines" in str(found.remarks[0])
+    alone = {part: read(two, "a.nc", part=(part,)).curve for part in (1, 2)}
+    for part, order in ((None, (1, 2)), ((1, 2), (1, 2)), ((2, 1), (2, 1))):
+        found = read(two, "a.nc", part=part)
+        curve = found.curve
+        assert isinstance(curve, SplineCurve) and not curve.closed and len(curve.raised) == 1
+        (begin, end), theta = curve.raised[0], curve.sample(4000)
+        share = f"{100 * (end - begin) / (2 * np.pi):.0f}"
+        assert f"raised once: {share} % of the time" in str(found.remarks[0])
+        for times, line in ((theta <= begin, order[0]), (theta >= end, order[1])):
+            assert alone[line].nearest(curve.at(theta[times]))[1].max() < 5e-4
     small = read(two, "a.nc", part=(2,)).curve
     assert small.length() == pytest.approx(circle(0.01).length(), rel=1e-3)
     with pytest.raises(CodedError, match="part 3: the file has 2 lines"):
@@ -499,9 +505,6 @@ def test_what_a_message_quotes_of_a_file_is_short() -> None:
         with pytest.raises(CodedError) as refused:
             read(text)
         assert len(str(refused.value)) < 300
-    line = f'<path id="{long}" d="M0 0 L5 0 L5 5"/>'
-    (remark, *_) = read(f"<svg>{line}{line.replace('5 5', '9 9')}</svg>", "a.svg", fit=0.1).remarks
-    assert len(str(remark)) < 300
 
 
 def test_a_drawing_that_svgpathtools_fails_on_is_refused() -> None:

@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 
 from onpath.app.lab.path_editor import BLEND, PathEditor
 from onpath.models.arrays import Array
-from onpath.models.paths.curve_blend import aligned, blend
+from onpath.models.paths.curve_blend import aligned
 from onpath.models.paths.curve_faults import ambiguities, curve_faults, strand_faults
 from onpath.models.paths.curve_fit import closed_through, control_points, open_through
 from onpath.models.paths.curves import Curve, chebyshev_curve, circle, ellipse, fourier, segment
 from onpath.models.paths.path_checks import LEAST_MARGIN, STRANDS_APART, TUBE
-from onpath.models.paths.path_design import MOST_POINTS, REACH, PathDesign, drawn, presets
+from onpath.models.paths.path_design import MOST_POINTS, REACH, PathDesign, presets
 from onpath.models.systems.five_bar_robot import RIGID_FIVE_BAR
 
 ROBOT = RIGID_FIVE_BAR
@@ -188,14 +188,6 @@ def test_added_point_lies_on_the_path_and_hardly_changes_it(name: str) -> None:
         assert np.array_equal(less.points, design.points)
 
 
-def test_no_edit_puts_a_point_where_no_path_may_be_kept() -> None:
-    stroke = np.array([[-0.2, 0.1875], [-0.0625, 0.2], [0.1, 0.2], [0.2, -0.1]])
-    design = drawn(stroke)
-    assert np.abs(design.points).max() > REACH
-    points = design.added(len(design.points) - 1).points
-    assert np.abs(points).max() <= REACH
-
-
 def test_there_is_a_least_and_a_greatest_number_of_points() -> None:
     for name, least in (("circle", 3), ("segment", 2)):
         design = presets()[name]
@@ -208,43 +200,6 @@ def test_there_is_a_least_and_a_greatest_number_of_points() -> None:
         design = design.added(k % len(design.points))
     with pytest.raises(ValueError, match=f"at most {MOST_POINTS}"):
         design.added(0)
-
-
-# Drawing
-
-
-def stroke_along(curve: Curve, begin: float, turn: float) -> np.ndarray:
-    return curve.at(begin + turn * np.linspace(0, 2 * np.pi * 0.97, 80))
-
-
-@pytest.mark.parametrize("turn", [1, -1])
-@pytest.mark.parametrize("begin", [0.0, 1.0, 2.5, -2.0])
-@pytest.mark.parametrize("name", RINGS)
-def test_drawn_ring_lies_where_it_was_drawn_and_blends_from_any_other(
-    name: str, begin: float, turn: int
-) -> None:
-    wanted = presets()[name].curve
-    design = drawn(stroke_along(wanted, begin, turn), circle(0.05))
-    assert design.name == "drawn" and design.curve.closed
-    assert wanted.nearest(design.curve.at(design.curve.sample(64)))[1].max() < 4e-3
-    assert design.curve.nearest(design.points)[1].max() < 1e-6
-    for half_way in (blend(presets()[other].curve, design.curve, 0.5) for other in RINGS):
-        assert np.linalg.norm(half_way.at(half_way.sample(64)), axis=1).min() > 0.03
-        found = strand_faults(half_way.at(half_way.sample(240)), True)
-        assert "crosses" not in [fault.check for fault in found]
-
-
-@pytest.mark.parametrize("turn", [1, -1])
-def test_drawn_line_runs_as_the_one_before_it(turn: int) -> None:
-    line = segment((-0.06 * turn, -0.03), (0.06 * turn, 0.02))
-    stroke = line.at(np.linspace(-np.pi, np.pi, 40))
-    for before in (None, circle(0.05), segment((-0.05, 0.0), (0.05, 0.0))):
-        design = drawn(stroke, before)
-        assert not design.curve.closed
-        assert design.curve.at(np.array(np.pi))[0] > design.curve.at(np.array(-np.pi))[0]
-        assert line.nearest(design.curve.at(design.curve.sample(32)))[1].max() < 1e-3
-    backwards = drawn(stroke, segment((0.05, 0.0), (-0.05, 0.0)))
-    assert backwards.curve.at(np.array(np.pi))[0] < backwards.curve.at(np.array(-np.pi))[0]
 
 
 @settings(max_examples=25, deadline=None)
@@ -268,23 +223,6 @@ def test_alignment_changes_the_parameter_and_not_the_curve(
     # nothing else on the grid is nearer to `base`, not even what undoes the turning
     half_degree = math.radians(0.5) ** 2 * (base.at(grid, 1) ** 2).sum()
     assert ((points - base.at(grid)) ** 2).sum() <= 1.01 * half_degree
-
-
-BAD_STROKES = [
-    np.zeros((0, 2)),
-    np.zeros((1, 2)),
-    np.zeros((50, 2)),
-    np.full((5, 2), np.nan),
-    np.array([[0, 0], [np.inf, 0], [0.1, 0.1]]),
-    np.array([[0, 0], [0.001, 0], [0.002, 0.001]]),
-    np.zeros(4),
-]
-
-
-@pytest.mark.parametrize("stroke", BAD_STROKES, ids=str)
-def test_an_invalid_stroke_is_refused_with_a_reason(stroke: np.ndarray) -> None:
-    with pytest.raises(ValueError, match=r"path|stroke"):
-        drawn(stroke)
 
 
 # The editor

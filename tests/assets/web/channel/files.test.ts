@@ -20,7 +20,7 @@ class Server {
     constructor(private readonly refuses = "", private readonly loses = -1) {}
 
     private answer(message: Omit<FileMessage, "is" | "lines" | "part" | "helps">): void {
-        this.files.hear({ is: "file", lines: [], part: 0, helps: [], ...message })
+        this.files.hear({ is: "file", lines: [], helps: [], ...message })
     }
 
     private take(message: PageMessage): void {

@@ -5,7 +5,7 @@ import { Files } from "../../../../assets/web/channel/files"
 import type { PageMessage, SendFile } from "../../../../assets/web/channel/messages"
 import { noFile, pastedFile, pathFromFile } from "../../../../assets/web/parts/file_sheet"
 
-const NOTHING = { received: 3, why: "", lines: [], part: 0, helps: [] }
+const NOTHING = { received: 3, why: "", lines: [], helps: [] }
 
 function opened(chosenLast = noFile()): { sent: PageMessage[]; files: Files; body: HTMLElement; chosen: (file: File) => void } {
     const sent: PageMessage[] = [], files = new Files(message => sent.push(message))
@@ -99,19 +99,26 @@ test("a sheet that is closed gives its file up", async () => {
 
 const LINES = [[0, 0, 100, 100], [0, 500, 900, 500]]
 
-test("each line of a file is shown, and the one that is pressed is taken, of the file that the server has", async () => {
+test("each line of a file is shown, and the one that is pressed is taken alone, or all again, of the file that the server has", async () => {
     const { sent, files, body, chosen } = opened()
     chosen(new File(["x,y"], "a.svg"))
     const sends = () => sent.filter((each): each is SendFile => each.is === "send")
-    files.hear({ is: "file", number: sends()[0]!.number, state: "used", ...NOTHING, lines: LINES, part: 2 })
+    files.hear({ is: "file", number: sends()[0]!.number, state: "used", ...NOTHING, lines: LINES })
     await settled()
     const shown = [...body.querySelectorAll("polyline")]
-    assert.deepEqual(shown.map(line => line.getAttribute("class")), ["", "taken"])
+    assert.deepEqual(shown.map(line => line.getAttribute("class")), ["taken", "taken"])
     assert.equal(shown[0]!.getAttribute("points"), "0 1000 100 900")
     const picture = body.querySelector("svg.lines")!
     picture.getBoundingClientRect = () => ({ left: 10, top: 20, width: 1280, height: 1080 }) as DOMRect
-    picture.dispatchEvent(new MouseEvent("click", { clientX: 10 + 100 + 40 + 90, clientY: 20 + 40 + 850 }))
-    assert.equal(sends()[1]!.use.part, 1)
+    const press = async () => {
+        picture.dispatchEvent(new MouseEvent("click", { clientX: 10 + 100 + 40 + 90, clientY: 20 + 40 + 850 }))
+        files.hear({ is: "file", number: sends().at(-1)!.number, state: "used", ...NOTHING, lines: LINES })
+        await settled()
+        return [...body.querySelectorAll("polyline")].map(line => line.getAttribute("class"))
+    }
+    assert.deepEqual(await press(), ["taken", ""])
+    assert.deepEqual(await press(), ["taken", "taken"])
+    assert.deepEqual(sends().map(({ use }) => use.part), [0, 1, 0])
     assert.equal(sends()[1]!.again, sends()[0]!.number)
     sheet()!.remove()
 })
@@ -137,7 +144,7 @@ test("a sheet that is opened again has the last file and its values", async () =
     numberOf(first.body, "size").dispatchEvent(new Event("change"))
     const answer = async () => {
         const begun = first.sent.findLast((each): each is SendFile => each.is === "send")!
-        first.files.hear({ is: "file", number: begun.number, state: "used", ...NOTHING, lines: LINES, part: 2 })
+        first.files.hear({ is: "file", number: begun.number, state: "used", ...NOTHING, lines: LINES })
         await settled()
     }
     await answer()
@@ -145,7 +152,7 @@ test("a sheet that is opened again has the last file and its values", async () =
     ;(first.body.closest("dialog") as HTMLDialogElement).close()
     const { body, sent } = opened(last)
     assert.equal(numberOf(body, "size").valueAsNumber, 60)
-    assert.equal(body.querySelectorAll("polyline.taken").length, 1)
+    assert.equal(body.querySelectorAll("polyline.taken").length, 2)
     assert.equal(sent.length, 0)
     numberOf(body, "size").valueAsNumber = 80
     numberOf(body, "size").dispatchEvent(new Event("change"))

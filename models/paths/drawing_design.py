@@ -1,0 +1,161 @@
+"""Drawings as users edit them: a curve of many pieces with handles on it.
+
+A handle at θ_h is dragged by s. With the distances a and b of its neighbours before and after it,
+the control point that acts most at ξ_j is moved by w_j s,
+
+    w_j = f((ξ_j - θ_h) / b) after it, f((θ_h - ξ_j) / a) before it,   f = 1 - 35 t⁴ + 84 t⁵ - 70 t⁶
+    + 20 t⁷ for t in [0, 1], else 0,
+
+divided by what makes the curve move by s at the handle. f has three derivatives that are 0 at both
+ends. So a drawing is bent between the neighbours of a handle only.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from typing_extensions import override
+
+from onpath.models.arrays import Array
+from onpath.models.errors import CodedError
+from onpath.models.paths.curve_blend import aligned
+from onpath.models.paths.curve_fit import control_points
+from onpath.models.paths.curves import PERIOD, Curve, SeriesCurve, circle, segment
+from onpath.models.paths.path_design import MOST_POINTS, REACH, PathDesign
+from onpath.models.paths.spline_curves import DEGREE, WINDOW, SplineCurve, grained, piece_basis
+from onpath.models.paths.spline_fit import spline_through
+
+APART = 0.04  # [m], usual distance of handles along a drawing
+FEWEST = 6  # handles of a short drawing
+NARROWEST = 3  # pieces between a handle and the end of its bump
+TREMBLE = 1e-3  # [m], smoothing of a line drawn by hand
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DrawingDesign(PathDesign):
+    """A drawing with handles, which are `points`.
+
+    Attributes:
+        theta: places of the handles, rising, shape (k,), [rad].
+    """
+
+    theta: Array
+
+    @override
+    def moved(self, index: int, z: Array) -> PathDesign:
+        self.check_index(index)
+        if not np.all(np.isfinite(z)):
+            raise CodedError("error.point_not_finite")
+        curve = self._curve
+        shift = np.clip(z, -REACH, REACH) - curve.at(self.theta[index])
+        points = grained(curve.points + bump(curve, self.theta, index)[:, None] * shift)
+        bent = replace(curve, points=points, given=None, deviation=0.0)
+        return DrawingDesign("edited", bent, bent.at(self.theta), self.theta)
+
+    @override
+    def added(self, index: int) -> PathDesign:
+        """The design with a new handle half-way to the next one; see `PathDesign.added`."""
+        self.check_index(index)
+        count = len(self.theta)
+        if count >= MOST_POINTS:
+            raise CodedError("error.too_many_points", most=MOST_POINTS)
+        last = not self.curve.closed and index == count - 1
+        begin = index - 1 if last else index
+        end = self.theta[begin + 1] if begin + 1 < count else self.theta[0] + PERIOD
+        middle = (self.theta[begin] + end) / 2
+        return self._with_handles(np.insert(self.theta, begin + 1, middle))
+
+    @override
+    def removed(self, index: int) -> PathDesign:
+        """The design without one handle; the drawing stays as it is."""
+        self.check_index(index)
+        least = 3 if self.curve.closed else 2
+        if len(self.theta) <= least:
+            raise CodedError("error.too_few_points", least=least)
+        return self._with_handles(np.delete(self.theta, index))
+
+    @property
+    def _curve(self) -> SplineCurve:
+        assert isinstance(self.curve, SplineCurve)
+        return self.curve
+
+    def _with_handles(self, theta: Array) -> PathDesign:
+        if self.curve.closed:
+            theta = np.sort((theta + np.pi) % PERIOD - np.pi)
+        return replace(self, points=self.curve.at(theta), theta=theta)
+
+
+def bump(curve: SplineCurve, theta: Array, index: int) -> Array:
+    """How far each control point moves if a handle is moved by 1, shape (pieces + DEGREE,).
+
+    Args:
+        theta: places of the handles, rising, [rad].
+        index: of the handle.
+    """
+    here, count, width = float(theta[index]), len(theta), PERIOD / curve.pieces
+    before = here - theta[index - 1] if index or curve.closed else np.inf
+    after = theta[(index + 1) % count] - here if index + 1 < count or curve.closed else np.inf
+    before, after = (each % PERIOD if curve.closed else each for each in (before, after))
+    if np.inf in (before, after):
+        before = after = min(before, after)
+    before, after = (min(max(each, NARROWEST * width), np.pi) for each in (before, after))
+    away = -np.pi + width * (np.arange(len(curve.points)) - (DEGREE - 1) / 2) - here
+    if curve.closed:
+        away = away[np.arange(len(away)) % curve.pieces]
+        away = (away + np.pi) % PERIOD - np.pi
+    t = np.minimum(np.where(away > 0, away / after, -away / before), 1.0)
+    weights = 1 - t**4 * (35 - 84 * t + 70 * t**2 - 20 * t**3)
+    place = (here + np.pi) / width
+    piece = min(int(place), curve.pieces - 1)
+    basis = np.array(piece_basis(place - piece, 1 / width)[0])
+    return weights / (basis @ weights[piece : piece + WINDOW])
+
+
+def drawn(stroke: Array) -> PathDesign:
+    """A design from a freehand stroke.
+
+    The curve is closed if the ends of the stroke are nearer to each other than a quarter of its
+    length.
+
+    Args:
+        stroke: shape (n, 2), [m]; clipped to ±REACH.
+
+    Raises:
+        ValueError: the stroke is too short or not finite.
+    """
+    stroke = np.asarray(stroke, dtype=float)
+    if stroke.ndim != 2 or not len(stroke) or not np.all(np.isfinite(stroke)):
+        raise CodedError("error.stroke_not_finite")
+    stroke = np.clip(stroke, -REACH, REACH)
+    length = float(np.linalg.norm(np.diff(stroke, axis=0), axis=1).sum())
+    closed = float(np.linalg.norm(stroke[0] - stroke[-1])) < 0.25 * length
+    return from_curve(spline_through([stroke], closed, TREMBLE))
+
+
+def from_curve(curve: Curve) -> PathDesign:
+    """A design from any plane curve.
+
+    The parameter of a series is aligned with that of a circle (closed) or a segment to the right
+    (open): the robots keep their direction of travel, and the old path can be blended into it.
+    """
+    if isinstance(curve, SplineCurve):
+        theta = _handles(curve)
+        return DrawingDesign("drawn", curve, curve.at(theta), theta)
+    assert isinstance(curve, SeriesCurve)
+    rightwards = segment((-0.1, 0.0), (0.1, 0.0))
+    turned = aligned(curve, circle(0.1) if curve.closed else rightwards)
+    points = control_points(turned, 10 if curve.closed else 6)
+    kept = replace(turned, given=curve.given, deviation=curve.deviation)
+    return PathDesign("drawn", kept, points)
+
+
+def _handles(curve: SplineCurve) -> Array:
+    """Places of handles at equal distances along what is drawn, shape (k,), [rad]."""
+    theta = np.linspace(-np.pi, np.pi, 2 * curve.grid + 1)
+    middle = (theta[1:] + theta[:-1]) / 2
+    steps = np.linalg.norm(np.diff(curve.at(theta), axis=0), axis=1) * curve.draws(middle)
+    s = np.concatenate([[0.0], np.cumsum(steps)])
+    count = int(np.clip(s[-1] / APART, FEWEST, MOST_POINTS))
+    even: Array = np.linspace(0.0, float(s[-1]), count, endpoint=not curve.closed)
+    return np.interp(even, s, theta)
