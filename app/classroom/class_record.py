@@ -1,4 +1,4 @@
-"""The record of a class: a workbook (.xlsx) with one row for each student and each item asked.
+"""The record of a class: a workbook (.xlsx) with one row for each answer of each student.
 
 Every spreadsheet, in any language, opens it in columns. CSV has no such form, since its separator
 and decimal mark depend on the language. A column holds one type, and text stays text: no cell is a
@@ -10,7 +10,8 @@ from __future__ import annotations
 import io
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from datetime import datetime
+from datetime import UTC, datetime
+from functools import partial
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
@@ -18,8 +19,9 @@ from onpath.app.classroom.classroom import Member
 from onpath.lessons.course import Course
 from onpath.lessons.kept.option_keys import second_key
 from onpath.lessons.option_order import LETTERS
-from onpath.lessons.progress import Answer, Notes
+from onpath.lessons.progress import Answer, Given, Notes, given_to
 from onpath.lessons.schema import (
+    Block,
     Choice,
     Lesson,
     NumberQuestion,
@@ -27,19 +29,24 @@ from onpath.lessons.schema import (
     Prediction,
     Quiz,
     Sketch,
-    Step,
 )
+from onpath.lessons.votes import Vote, is_late, vote_on
 
 Row = Mapping[str, str | int | float]
 QUESTIONS = Quiz, NumberQuestion, OpenQuestion
+KINDS_ASKED: dict[type[Block], str] = {
+    Quiz: "question",
+    NumberQuestion: "number",
+    OpenQuestion: "words",
+}
 WIDTH = 14  # [characters], width of a column
 _STUDENT = ("number", "nickname")
 _WHERE = ("lesson", "title", "step", "kind")
 ANSWERS = (
-    *(*_STUDENT, *_WHERE, "item", "result", "chosen", "right", "value", "text"),
-    *("sure", "reason", "why", "hints"),
+    *(*_STUDENT, *_WHERE, "item", "attempt", "given (UTC)", "late"),
+    *("result", "chosen", "right", "value", "text", "sure", "reason", "why", "hints"),
 )
-SKETCHES = (*_STUDENT, *_WHERE, "time", "drawn")
+SKETCHES = (*_STUDENT, *_WHERE, "attempt", "time", "drawn")
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,13 +69,18 @@ def class_record(
     language: str,
     made: datetime,
     more: Iterable[Sheet] = (),
+    votes: Sequence[Vote] = (),
 ) -> bytes:
     """The workbook.
 
-    The sheet Answers has a row for each prediction, task and question of every lesson that a
-    student has begun. `result` is "answered", "skipped", "open" (neither), "passed" (a task), or
-    "unknown" (the options have changed since). `right` is 1 or 0; `chosen` and `reason` are the
-    letters of options; `value` is a number, and `text` the student's own words. `hints` is the
+    The sheet Answers has a row for each answer to a prediction or a question of every lesson that
+    a student has begun, for each of these that is not answered, and for each task. `attempt` is 1
+    for the first answer to an item; of later ones, the last is kept, and after a discussion the
+    first. `given (UTC)` is empty for answers from before times were kept. `late` is 1 for an answer
+    after the vote was closed, and empty if there was none. `result` is "answered", "skipped",
+    "open" (neither), "passed" (a task), or "unknown" (the options have changed since). `right` is 1
+    or 0; `chosen` and `reason` are the letters of options; `value` is a number, and `text` the
+    student's own words. `hints` is the
     number of a task's hints that were shown. `right` is empty for a task that is meant to be found
     by trying, and so counts nothing. The sheet Sketches
     has the points of drawn curves, in the units of their axes.
@@ -76,11 +88,13 @@ def class_record(
     Args:
         made: time of the record, in UTC.
         more: further sheets; see `app.classroom.concept_test_results`.
+        votes: of the class.
     """
     members = list(members)
+    answers = partial(_answers, votes=votes)
     about = {"made (UTC)": f"{made:%Y-%m-%d %H:%M:%S}", "OnPath": _version(), "language": language}
     sheets = [
-        Sheet("Answers", ANSWERS, _of_all(members, course, language, _answers)),
+        Sheet("Answers", ANSWERS, _of_all(members, course, language, answers)),
         Sheet("Sketches", SKETCHES, _of_all(members, course, language, _sketches)),
         Sheet("Students", _STUDENT, map(_student, members)),
         *more,
@@ -141,12 +155,16 @@ def _of_all(members: Iterable[Member], course: Course, language: str, rows: Any)
                     yield {**where, **row}
 
 
-def _answers(lesson: Lesson, notes: Notes) -> Iterator[Row]:
-    for key, kind, prediction, answer in _predictions(lesson, notes):
-        index = int(key)
+def _answers(lesson: Lesson, notes: Notes, votes: Sequence[Vote]) -> Iterator[Row]:
+    for item, kind, prediction, attempt, given in _predictions(lesson, notes):
+        index, second = int(item), kind == "second"
         where = {"step": index + 1, "kind": kind, "item": lesson.steps[index].title}
-        unknown = (second_key(key) if kind == "second" else key) in notes.unknown
-        yield {**where, **_predicted(prediction, answer), **(_unknown() if unknown else {})}
+        answer = None if given is None else given.answer
+        unknown = (second_key(item) if second else item) in notes.unknown
+        is_lost = unknown and answer is not None and answer.skipped
+        row = {**_predicted(prediction, answer), **(_unknown() if is_lost else {})}
+        when = _when(attempt, given, vote_on(votes, lesson.name, item, second))
+        yield {**where, **when, **row}
     for index, step in enumerate(lesson.steps):
         for task in step.tasks():
             best = notes.tasks.get(task.id)
@@ -160,46 +178,72 @@ def _answers(lesson: Lesson, notes: Notes) -> Iterator[Row]:
             if not task.exploratory:
                 row["right"] = int(best is not None)
             yield {**row, **({"value": best} if task.best and best is not None else {})}
-        yield from _questions(index, step, notes)
+        yield from _questions(lesson, index, notes, votes)
+
+
+def _when(attempt: int, given: Given | None, vote: Vote | None) -> Row:
+    """Which of the answers to an item it is, when it was given, and whether that was late."""
+    if given is None:
+        return {}
+    row: dict[str, str | int] = {"attempt": attempt}
+    if given.time:
+        row["given (UTC)"] = f"{datetime.fromtimestamp(given.time, UTC):%Y-%m-%d %H:%M:%S}"
+        row |= {} if vote is None else {"late": int(is_late(vote, given))}
+    return row
 
 
 def _predictions(
     lesson: Lesson, notes: Notes
-) -> Iterator[tuple[str, str, Prediction, Answer | None]]:
-    """Key, kind and answer of each prediction, with the second answer if it was asked again."""
+) -> Iterator[tuple[str, str, Prediction, int, Given | None]]:
+    """Item, kind, number and event of each answer to a prediction, or none if it is open; those
+    of the last time it was asked again are of the kind "second"."""
     for index, step in enumerate(lesson.steps):
         for prediction in step.predictions():
-            key = str(index)
-            yield key, "prediction", prediction, notes.answers.get(key)
-            if key in notes.asked_again:
-                yield key, "second", prediction, notes.second.get(key)
+            item, asked = str(index), notes.asked_again.count(str(index))
+            given = list(enumerate(given_to(notes, item), 1))
+            first = [each for each in given if not each[1].round]
+            for attempt, each in first or [(0, None)]:
+                yield item, "prediction", prediction, attempt, each
+            again = [each for each in given if asked and each[1].round == asked]
+            for attempt, each in again or [(0, None)] * bool(asked):
+                yield item, "second", prediction, attempt, each
 
 
 def _sketches(lesson: Lesson, notes: Notes) -> Iterator[Row]:
-    for key, kind, _, answer in _predictions(lesson, notes):
-        if answer is not None:
-            for time, drawn in zip(answer.times, answer.values, strict=True):
-                yield {"step": int(key) + 1, "kind": kind, "time": time, "drawn": drawn}
+    for item, kind, _, attempt, given in _predictions(lesson, notes):
+        if given is not None and given.answer is not None:
+            where = {"step": int(item) + 1, "kind": kind, "attempt": attempt}
+            for time, drawn in zip(given.answer.times, given.answer.values, strict=True):
+                yield {**where, "time": time, "drawn": drawn}
 
 
-def _questions(index: int, step: Step, notes: Notes) -> Iterator[Row]:
-    """The rows of a step's questions, numbered if there are several."""
+def _questions(lesson: Lesson, index: int, notes: Notes, votes: Sequence[Vote]) -> Iterator[Row]:
+    """The rows of a step's questions, which are numbered if there are several."""
+    step = lesson.steps[index]
     asked = [at for at, block in enumerate(step.blocks) if isinstance(block, QUESTIONS)]
     for count, at in enumerate(asked, 1):
-        block, key = step.blocks[at], f"{index}.{at}"
-        item = f"{step.title} ({count})" if len(asked) > 1 else step.title
-        place = {"step": index + 1, "item": item}
-        if isinstance(block, Quiz):
-            row = _unknown() if key in notes.unknown else _chosen(block, notes.quiz.get(key))
-            yield {**place, "kind": "question", **row}
-        elif isinstance(block, NumberQuestion):
-            given = notes.numbers.get(key)
-            row = {"result": "open"} if given is None else {"result": "answered", "value": given}
-            right = {} if given is None else {"right": int(block.accepts(given))}
-            yield {**place, "kind": "number", **row, **right}
-        elif isinstance(block, OpenQuestion):
-            text = notes.written.get(key, "")
-            yield {**place, "kind": "words", "result": "answered" if text else "open", "text": text}
+        block, item = step.blocks[at], f"{index}.{at}"
+        title = f"{step.title} ({count})" if len(asked) > 1 else step.title
+        place = {"step": index + 1, "item": title, "kind": KINDS_ASKED[type(block)]}
+        vote = vote_on(votes, lesson.name, item)
+        for attempt, given in [*enumerate(given_to(notes, item), 1)] or [(0, None)]:
+            yield {**place, **_when(attempt, given, vote), **_answered(block, item, given, notes)}
+
+
+def _answered(block: Block, item: str, given: Given | None, notes: Notes) -> Row:
+    """The answer to a question."""
+    if given is None:
+        return _unknown() if item in notes.unknown else {"result": "open"}
+    if isinstance(block, NumberQuestion) and given.number is not None:
+        return {
+            "result": "answered",
+            "value": given.number,
+            "right": int(block.accepts(given.number)),
+        }
+    if isinstance(block, Quiz) and given.answer is not None:
+        is_lost = given.answer.option is None and item in notes.unknown
+        return _unknown() if is_lost else _chosen(block, given.answer.option)
+    return {"result": "answered" if given.text else "open", "text": given.text}
 
 
 def _predicted(prediction: Prediction, answer: Answer | None) -> Row:

@@ -366,7 +366,7 @@ class-set_aside_told =
        *[other] { $count } Personen bleiben beiseite, bis sie zurückkommen.
     }
 class-record = Ergebnisse
-class-record_text = Eine Zeile für jede Person und jede Vorhersage, Aufgabe und Frage der begonnenen Lektionen. Sie enthält Spitznamen: Behandle sie als personenbezogene Daten.
+class-record_text = Eine Zeile für jede Antwort, mit ihrer Zeit und ob sie zu spät kam, und für jede Aufgabe und jede offene Frage der begonnenen Lektionen. Die Tabelle enthält Spitznamen: Behandle sie als personenbezogene Daten.
 class-export = Ergebnisse der Klasse (XLSX)
 class-end = Die Klasse beenden
 class-end_sure = Die Klasse beenden? Spitznamen und Ergebnisse der Klasse werden gelöscht; die Labore gehen ohne Klasse weiter. Sichere die Ergebnisse zuerst.

@@ -368,7 +368,7 @@ class-set_aside_told =
        *[other] { $count } students are set aside until they come back.
     }
 class-record = Record
-class-record_text = One row for each student and each prediction, task and question of the lessons begun. It contains nicknames: treat it as personal data.
+class-record_text = One row for each answer, with its time and whether it was late, and for each task and each open question of the lessons begun. It contains nicknames: treat it as personal data.
 class-export = Class record (XLSX)
 class-end = End the class
 class-end_sure = End the class? Nicknames and the class record are deleted; the labs continue without a class. Export the record first.

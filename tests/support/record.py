@@ -6,13 +6,14 @@ import io
 import re
 import zipfile
 from collections import defaultdict
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from datetime import UTC, datetime
 from xml.etree import ElementTree
 
 from onpath.app.classroom.class_record import Sheet, class_record
 from onpath.app.classroom.classroom import Member
 from onpath.lessons.course import Course
+from onpath.lessons.votes import Vote
 
 MADE = datetime(2026, 1, 1, 12, 30, tzinfo=UTC)
 MAIN = "{http://schemas.openxmlformats.org/spreadsheetml/2006/main}"
@@ -27,10 +28,13 @@ class Row(defaultdict[str, Cell]):
 
 
 def record(
-    members: Iterable[Member], course: Course, more: Iterable[Sheet] = ()
+    members: Iterable[Member],
+    course: Course,
+    more: Iterable[Sheet] = (),
+    votes: Sequence[Vote] = (),
 ) -> dict[str, list[Row]]:
     """The sheets of a class's record."""
-    return sheets(class_record(members, course, "en", MADE, more))
+    return sheets(class_record(members, course, "en", MADE, more=more, votes=votes))
 
 
 def sheets(data: bytes) -> dict[str, list[Row]]:

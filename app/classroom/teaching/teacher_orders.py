@@ -317,4 +317,5 @@ class TeacherOrders:
         students = [(lab, member.progress) for lab, member in members.items()]
         test = course.lesson(BEFORE, language) if course.tests else None
         tests = sheets_without_names(test, students, self._class.code) if test else []
-        return class_record(members.values(), course, language, made, tests)
+        votes = self._class.votes
+        return class_record(members.values(), course, language, made, more=tests, votes=votes)

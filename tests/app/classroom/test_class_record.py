@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import zipfile
+from datetime import UTC, datetime
 from io import BytesIO
 
 import pytest
@@ -11,12 +12,15 @@ from hypothesis import strategies as st
 
 from onpath.app.classroom.class_record import ANSWERS, Sheet, class_record, workbook
 from onpath.app.classroom.classroom import Member
+from onpath.app.lab.lesson_state import LessonState, Sent
 from onpath.lessons.course import Course, read_course
 from onpath.lessons.progress import Answer, Notes, Progress
+from onpath.lessons.votes import Vote
 from tests.support.lesson_texts import LESSON, write_lesson
 from tests.support.record import MADE, record, sheets
 
-NUMBERS = {"number", "step", "right", "value", "time", "drawn", "hints"}
+NUMBERS = {"number", "step", "attempt", "late", "right", "value", "time", "drawn", "hints"}
+NAME, CHOICE, QUIZ = "01-a", 3, 7  # of a lesson, and indices of its steps
 STARTS = "=+-@|%\t\r\n;,\"'\uff1d\u2212"
 hostile = st.builds(
     lambda parts: "".join(parts),
@@ -78,6 +82,46 @@ def test_a_column_has_one_type_and_a_lesson_its_title(course: Course) -> None:
     assert {row["title"] for row in found["Answers"]} == {title}
     about = {row["of"]: row["is"] for row in found["About"]}
     assert about["made (UTC)"] == "2026-01-01 12:30:00" and about["language"] == "en"
+
+
+GIVEN = st.lists(
+    st.tuples(st.sampled_from(["choice", "quiz"]), st.integers(0, 1), st.integers(0, 200)),
+    max_size=8,
+)
+
+
+@given(GIVEN, st.integers(0, 200))
+def test_there_is_a_row_for_the_first_and_the_last_answer_with_its_time_and_whether_it_is_late(
+    course: Course, moves: list[tuple[str, int, int]], closes: int
+) -> None:
+    """Answers, in any order of items and options, at increasing times."""
+    now = 1e9
+    run = LessonState(course, clock=lambda: now)
+    given: dict[str, list[tuple[float, int]]] = {"prediction": [], "question": []}
+    for kind, option, wait in moves:
+        now += wait
+        if kind == "choice":
+            run.note_answer(Answer(option=option), Sent(NAME, CHOICE))
+        else:
+            run.answer_quiz(0, option, Sent(NAME, QUIZ))
+        given["prediction" if kind == "choice" else "question"].append((now, option))
+    votes = [Vote(NAME, str(CHOICE), CHOICE, closes=1e9 + closes)]
+    found = record([Member(1, "Ada", run.progress)], course, votes=votes)["Answers"]
+    for kind, step in (("prediction", CHOICE), ("question", QUIZ)):
+        rows = [row for row in found if row["step"] == step + 1 and row["kind"] == kind]
+        wanted = [*given[kind][:1], *given[kind][1:][-1:]]
+        if not moves:
+            assert rows == []
+        elif not wanted:
+            assert [row["result"] for row in rows] == ["open"]
+        else:
+            told = [(row["attempt"], row["given (UTC)"], row["chosen"]) for row in rows]
+            assert told == [
+                (attempt, f"{datetime.fromtimestamp(time, UTC):%Y-%m-%d %H:%M:%S}", "AB"[option])
+                for attempt, (time, option) in enumerate(wanted, 1)
+            ]
+            late = [int(time > 1e9 + closes) if kind == "prediction" else "" for time, _ in wanted]
+            assert [row["late"] for row in rows] == late
 
 
 def test_the_same_class_gives_the_same_bytes(course: Course) -> None:
