@@ -181,6 +181,11 @@ class ClientScene:
             self._rebuilds.submit(lambda: self._rebuild(snapshot))
 
     def _rebuild(self, first: PageSnapshot) -> None:
+        """Clear the scene and build it again, under the same names.
+
+        viser 1.1 may draw a batched mesh once more after it has freed it and before it has put the
+        new one in its place. WebGL refuses these draws with GL_INVALID_OPERATION; nothing is seen.
+        """
         self._on_path &= self._robot == robot_of(first)
         with in_turn(), self.client.atomic():
             clear_scene(self.client)

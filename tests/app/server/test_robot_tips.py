@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
+from threading import Event
+from typing import Any
 
 import pytest
 
@@ -27,12 +30,16 @@ FORK = (
 
 @pytest.fixture(scope="module")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LabServer]:
-    file = tmp_path_factory.mktemp("robot") / "arm.urdf"
-    file.write_text(urdf("own", PLANAR).replace("</robot>", FORK), "utf-8")
-    entry = RobotOptions(tip="tool0").entry_of(str(file))
-    server = LabServer("127.0.0.1", 0, LoopCache(), ServerOptions(robot=entry))
+    server = served(tmp_path_factory.mktemp("robot") / "arm.urdf")
     yield server
     server.stop()
+
+
+def served(file: Path) -> LabServer:
+    """A server of an arm whose last link has three tips."""
+    file.write_text(urdf("own", PLANAR).replace("</robot>", FORK), "utf-8")
+    entry = RobotOptions(tip="tool0").entry_of(str(file))
+    return LabServer("127.0.0.1", 0, LoopCache(), ServerOptions(robot=entry))
 
 
 def student(server: LabServer) -> Student:
@@ -85,6 +92,44 @@ def test_a_tip_that_fails_says_why_and_the_robot_stays(server: LabServer) -> Non
         given.file.write_text(kept, "utf-8")
         assert page.state["robot"] == first and set(ROBOTS) == names
         assert cards(page)["link3"]["is_built"] is False
+
+
+@pytest.mark.thorough
+def test_a_page_that_waits_for_another_one_s_robot_is_told_and_gets_its_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nothing is built twice, whether it waits for its own robot or for another one."""
+    build, read = Event(), ExportProcess.call
+    calls = list[object]()
+
+    def call(process: ExportProcess, *wanted: Any) -> Any:
+        calls.append(wanted)
+        assert build.wait(60)
+        return read(process, *wanted)
+
+    monkeypatch.setattr(ExportProcess, "call", call)
+    server = served(tmp_path / "second.urdf")
+    try:
+        with student(server) as page, student(server) as same, student(server) as other:
+            for each in (page, same, other):
+                each.open()
+                each.read(lambda each=each: each.state)
+            first = page.state["robot"]
+            page.tell({"is": "choose_tip", "robot": first, "tip": "tip"})
+            page.read(lambda: "second.urdf" in page.state["message"])
+            for each, tip in ((same, "tip"), (other, "link3")):
+                each.tell({"is": "choose_tip", "robot": first, "tip": tip})
+                told = ENGLISH("robots.waiting")
+                each.read(lambda each=each, told=told: told in each.state["message"])
+            build.set()
+            for each, tip in ((page, "tip"), (same, "tip"), (other, "link3")):
+                each.read(lambda each=each: each.state["robot"] != first)
+                given = given_file(each.state["robot"])
+                assert given is not None and given.tip == tip
+        assert len(calls) == 2
+    finally:
+        build.set()
+        server.stop()
 
 
 @pytest.mark.thorough
