@@ -47,8 +47,10 @@ class WriteGuide:
 class WriteWorksheet:
     """Write a lesson's worksheet, two pages with axes to draw on, and its key."""
 
-    lesson: Annotated[str, tyro.conf.Positional]
+    lesson: Annotated[str, tyro.conf.Positional] = ""
     """Name or number of the lesson."""
+    all: Path | None = None
+    """Write the worksheets and keys of all lessons as pages into this folder instead."""
     html: Path | None = None
     """Write a page that prints as A4."""
     pdf: Path | None = None
@@ -65,12 +67,30 @@ class WriteWorksheet:
         from onpath.app.exports.guide import worksheet
 
         files = {"--html": self.html, "--pdf": self.pdf, "--key": self.key}
+        if self.all is not None:
+            return self._write_all(self.all, any((self.lesson, *files.values())))
+        if not self.lesson:
+            raise ValueError("which lesson? expected its name or number, or --all FOLDER")
         _check(files, "--html FILE, --pdf FILE or --key FILE")
         course, folder, words = _course(self.lessons, self.language)
         name = chosen_lesson(course, self.lesson).name
         page, key = worksheet(course, folder, name, words)
         _write(page, self.html, self.pdf)
         _write(key, self.key, None)
+
+    def _write_all(self, into: Path, is_of_one: bool) -> None:
+        """Write the worksheets and keys of all lessons; nothing if one of them has a problem."""
+        from onpath.app.exports.guide import worksheet
+
+        if is_of_one:
+            raise ValueError("--all: the folder gets all lessons; name neither one nor files")
+        if not into.is_dir():
+            raise ValueError(f"--all {into}: there is no such folder")
+        course, folder, words = _course(self.lessons, self.language)
+        made = {name: worksheet(course, folder, name, words) for name in course.lessons}
+        for name, (page, key) in made.items():
+            _write(page, into / f"{name}.html", None)
+            _write(key, into / f"{name}-key.html", None)
 
 
 def _check(files: dict[str, Path | None], wanted: str) -> None:

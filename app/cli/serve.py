@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from threading import Thread
 from typing import TYPE_CHECKING, Literal
 from urllib.parse import urlsplit
 
@@ -55,8 +56,9 @@ class Serve:
     most_labs: int = 100_000
     """If the database holds more labs, the least recently used are deleted, but none in use."""
     classroom: bool = False
-    """Open a class, and print its address for the students and a key for the teacher; both stay the
-    same. With teachers' keys in the environment, ONPATH_TEACHER_KEY, each has a class instead."""
+    """Open a class, and print its address for the students and where the teacher's key is; both
+    stay the same. With teachers' keys in the environment, ONPATH_TEACHER_KEY, each has a class
+    instead."""
     privacy_url: str = ""
     """Address of your privacy notice, https://example.org/privacy, shown where a nickname is asked
     for."""
@@ -232,7 +234,8 @@ def print_classes(classrooms: Sequence[Classroom], site: str, *, key_is_known: b
 
     Args:
         site: the address at which other devices open the lab.
-        key_is_known: whether the teacher's key has been given; if not, it is printed.
+        key_is_known: whether the teacher's key has been given. If not, it is told where it is: a
+            terminal, which is often on a projector, shows it only when somebody asks.
     """
     from onpath.app.common.access_codes import shown
     from onpath.app.common.qr_code import qr_text
@@ -248,9 +251,33 @@ def print_classes(classrooms: Sequence[Classroom], site: str, *, key_is_known: b
         elif len(classrooms) == 1 and _can_show(code := qr_text(address)):
             print(code)
         if not key_is_known:
-            key = shown(room.key)
-            print(f"teacher's key: {key}     there, under Class, Teacher; tell it nobody")
+            tell_key(shown(room.key))
     print(end="", flush=True)  # does nothing without a standard output
+
+
+def tell_key(key: str) -> None:
+    """Say where the teacher's key is; show it in a terminal when Enter is pressed there.
+
+    A key that no file has is printed at once, since nobody could find it.
+    """
+    from onpath.app.classroom.class_opening import key_file
+
+    try:
+        is_kept = key_file().read_text("utf-8", errors="replace").strip() == key
+    except OSError:
+        is_kept = False
+    if not is_kept:
+        print(f"teacher's key: {key}     there, under Class, Teacher; tell it nobody")
+        return
+    print(f"teacher's key: in {key_file()}")
+    if sys.stdin is not None and sys.stdin.isatty() and sys.stdout is not None:
+        print("               Press Enter to show it here: turn the projector away first.")
+        Thread(target=_show_when_asked, args=(key,), name="key", daemon=True).start()
+
+
+def _show_when_asked(key: str) -> None:
+    if sys.stdin.readline():
+        print(f"teacher's key: {key}     there, under Class, Teacher; tell it nobody", flush=True)
 
 
 def _can_show(text: str) -> bool:

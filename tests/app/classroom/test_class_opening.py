@@ -5,10 +5,12 @@ from __future__ import annotations
 import io
 import os
 import sys
+import threading
 from pathlib import Path
 
 import platformdirs
 import pytest
+from typing_extensions import override
 
 from onpath.app.classroom.admission import CODE_LENGTH, class_code_of, class_id_of
 from onpath.app.classroom.class_keeper import ClassKeeper
@@ -131,9 +133,39 @@ def test_a_terminal_shows_the_address_as_a_qr_code_if_a_phone_can_open_it(
     print_classes([room], site, key_is_known=False)
     terminal.seek(0)
     said = terminal.read()
-    assert f"{site}/c/{room.code}/" in said and shown(room.key) in said
+    assert f"{site}/c/{room.code}/" in said and shown(room.key) not in said
+    assert str(key_file()) in said
     assert (qr_text(f"{site}/c/{room.code}/") in said) == is_shown
     assert ("--host 0.0.0.0" in said) == ("192" not in site)
+
+
+class Terminal(io.StringIO):
+    """A terminal on which somebody types."""
+
+    @override
+    def isatty(self) -> bool:
+        return True
+
+
+def test_a_terminal_shows_the_key_when_somebody_presses_enter(
+    home: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (room,) = open_classes([])
+    for typed, is_shown in (("\n", True), ("", False)):  # Enter, and the end of the input
+        terminal = Terminal()
+        monkeypatch.setattr(sys, "stdout", terminal)
+        monkeypatch.setattr(sys, "stdin", Terminal(typed))
+        print_classes([room], "http://192.0.2.7:8080", key_is_known=False)
+        for thread in [each for each in threading.enumerate() if each.name == "key"]:
+            thread.join()
+        assert (shown(room.key) in terminal.getvalue()) == is_shown
+
+
+def test_a_key_that_no_file_has_is_printed(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (room,) = open_classes([])
+    key_file().unlink()
+    print_classes([room], "http://192.0.2.7:8080", key_is_known=False)
+    assert shown(room.key) in capsys.readouterr().out
 
 
 def test_a_class_without_an_output_to_print_on_is_opened(monkeypatch: pytest.MonkeyPatch) -> None:

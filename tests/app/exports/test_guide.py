@@ -175,6 +175,13 @@ def test_lessons_of_ones_own_have_a_guide_and_a_worksheet(tmp_path: Path) -> Non
         assert "<script" not in page and "&lt;script&gt;" in page and "default-src 'none'" in page
     assert files[0].read_text(encoding="utf-8").count("<article") == 4
     assert 'lang="de"' in files[1].read_text(encoding="utf-8")
+    (into := tmp_path.with_name(f"{tmp_path.name}-sheets")).mkdir()
+    assert run_command(["lessons", "worksheet", "--all", str(into), *sheets[4:], *own]) == 0
+    written = {file.name: file.read_bytes() for file in into.iterdir()}
+    assert written == {
+        "01-a.html": files[1].read_bytes(),
+        "01-a-key.html": files[2].read_bytes(),
+    }
 
 
 @pytest.mark.parametrize(
@@ -185,6 +192,9 @@ def test_lessons_of_ones_own_have_a_guide_and_a_worksheet(tmp_path: Path) -> Non
         (["guide", "--html", "/none/g.html"], "no folder"),
         (["guide", "07-flexible", "--html", "{}"], "did you mean 07-flexible-link"),
         (["worksheet", "99", "--html", "{}"], "unknown lesson '99'"),
+        (["worksheet", "--html", "{}"], "which lesson"),
+        (["worksheet", "1", "--all", "."], "name neither one nor files"),
+        (["worksheet", "--all", "{}"], "no such folder"),
         (["guide", "--language", "xx", "--html", "{}"], "there are de, en"),
     ],
 )
