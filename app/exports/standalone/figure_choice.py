@@ -27,7 +27,6 @@ from onpath.models.control.settable import changed, specs, with_values
 from onpath.models.control.sides import DEFAULT_LAWS, SIDES
 from onpath.models.errors import CodedError, message_of
 from onpath.models.paths.curves import Curve
-from onpath.models.paths.spline_curves import SplineCurve
 from onpath.models.studies.experiments import check_path
 from onpath.models.systems.catalogue import ROBOTS, RobotEntry
 from onpath.models.systems.law_parameters import LEVEL_SET
@@ -199,8 +198,6 @@ def refusal(figure: FigureChoice, control: str) -> str | None:
         return None
     if rise_of(parameters) or any(path.dimension == 3 for path in figure.paths.values()):
         return "a space curve cannot be changed in a figure"
-    if any(isinstance(path, SplineCurve) for path in figure.paths.values()):
-        return "a drawing cannot be bent in a figure"
     planned = law_named(figure.planned).plan is not None
     if parameters.across == LEVEL_SET or parameters.at_limit == "slow_down" or planned:
         return "the law has been adapted to the path as it is"

@@ -47,8 +47,10 @@ from onpath.models.control.settable import specs, value_of
 from onpath.models.control.sides import RIGHT, SIDES
 from onpath.models.paths.curve_faults import ambiguities
 from onpath.models.paths.curves import TERMS, Curve
+from onpath.models.paths.drawing_design import DrawingDesign, bump
 from onpath.models.paths.path_checks import DRAWING_CHECKS, FINER, POINT_CHECKS, SAMPLES
-from onpath.models.paths.spline_curves import SplineCurve
+from onpath.models.paths.path_design import PathDesign
+from onpath.models.paths.spline_curves import GRAIN, SplineCurve
 from onpath.models.robot_files.xml_elements import shown
 from onpath.models.standalone.curve_scans import GRID, REFINEMENTS
 from onpath.models.standalone.edit import ROW
@@ -150,7 +152,7 @@ _EDIT = {
     "grid": GRID,
     "refinements": REFINEMENTS,
     "turns": PER_PIECE,
-    "grain": 1e-6,
+    "grain": GRAIN,
     "halvings": HALVINGS,
     "blend": BLEND,
     "nudge": NUDGE,
@@ -283,9 +285,19 @@ def _path(figure: FigureChoice, name: str, curve: Curve) -> dict[str, Any]:
         "states": [figure.start(law, curve).tolist() for law in figure.every_law],
         "settings": figure.settings(figure.planned, curve).tolist(),
         "points": design.points.tolist() if figure.edits else [],
-        "handles": [],
+        "handles": _handles(design) if figure.edits else [],
         "fit": fit_name(design),
     }
+
+
+def _handles(design: PathDesign) -> list[dict[str, Any]]:
+    """θ of a drawing's handles, and how far each control point moves with one; none of a series."""
+    if not isinstance(design, DrawingDesign):
+        return []
+    curve, theta = design.curve, design.theta
+    assert isinstance(curve, SplineCurve)
+    weights = [bump(curve, theta, index).tolist() for index in range(len(theta))]
+    return [{"theta": at, "weights": w} for at, w in zip(theta.tolist(), weights, strict=True)]
 
 
 def _outline(figure: FigureChoice, curve: Curve, path: Curve) -> list[float]:

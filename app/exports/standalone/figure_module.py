@@ -16,6 +16,7 @@ from onpath.models.closed_loop.page_functions import measurements, page_function
 from onpath.models.closed_loop.wasm_loop import Scan, wasm_of
 from onpath.models.paths.curve_fit import control_points
 from onpath.models.paths.curves import Curve
+from onpath.models.paths.drawing_design import from_curve
 from onpath.models.paths.path_design import PathDesign, presets
 from onpath.models.paths.spline_curves import SplineCurve
 from onpath.models.standalone.curve_scans import beyond_function, curve_scans
@@ -36,6 +37,8 @@ def design_of(name: str, curve: Curve) -> PathDesign:
     known = presets()
     if name in known and known[name].curve is curve:
         return known[name]
+    if isinstance(curve, SplineCurve):
+        return from_curve(curve)
     return PathDesign(name, curve, control_points(curve, 10 if curve.closed else 6))
 
 

@@ -272,7 +272,7 @@ export class Path {
         const by = [0, 1].map(k => numbers[tried[0] + 2 * index + k]! - numbers[kept[0] + 2 * index + k]!)
         handles[index]!.weights.forEach((weight, j) => by.forEach((each, k) => {
             const place = 2 * j + k
-            numbers[tried[1] + place] = grain * Math.round((numbers[kept[1] + place]! + weight * each) / grain)
+            numbers[tried[1] + place] = grain * Math.round((numbers[kept[1] + place]! + weight * each) / grain) + 0 // no -0
         }))
         handles.forEach(({ theta }, i) => {
             numbers.set([0, theta, 0, theta], state)

@@ -50,7 +50,7 @@ DRAWINGS = {
 OTHERS = ("waiting_clock", "set_point")
 CLOSE = 1e-12
 BENDS = 1e-10
-"""On drawings: sharp bends make other roundings of a sine larger."""
+"""On drawings, from the same state: sharp bends make other roundings of a sine larger."""
 EDITED = 1e-10
 """After an edit: the curve itself is fitted with other roundings, to 1e-13."""
 ACT = """([what, value]) => {
@@ -62,6 +62,7 @@ ACT = """([what, value]) => {
     else simulation[what](value)
 }"""
 LOGGED = "onpath.simulation.sides.map(side => [...side.logged()])"
+STATES = "onpath.simulation.sides.map(side => [...side.keep().state])"
 DISTANCES = "onpath.simulation.sides.map(side => side.distance)"
 TEXT = "document.body.textContent"
 CHOOSE = """([name, option]) => {
@@ -198,22 +199,43 @@ def drawn(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 QUICK = [("set", {"speed": 6.0, "K1": 100.0})]
+BENT = [
+    *(("move", [2, [0.06, 0.01]]), ("advance", 100), ("move", [2, [0.03, 0.01]]), ("advance", 9)),
+    *(
+        ("advance", 400),
+        ("drop", None),
+        ("move", [3, [0.2, 0.2]]),
+        ("advance", 900),
+        ("drop", None),
+    ),
+]
 TORN = [("advance", 700), ("hold", True), ("advance", 500), ("hold", False), ("advance", 900)]
 
 
 @settings(max_examples=8, deadline=None)
 @given(acts())
 @example([("choose", 1), *QUICK, *TORN, ("change", [1, 2]), *TORN])
+@example([("choose", 0), *QUICK, ("advance", 500), *BENT, ("choose", 2), *BENT, ("reset", None)])
 def test_a_drawing_is_followed_as_in_python(drawn: Path, script: list[Act]) -> None:
     opened, python = Opened(drawn), PythonFigure(drawings())
-    for act in (*(act for act in script if act[0] != "move"), ("advance", 1000)):
+    for act in (*script, ("advance", 1000)):
         opened.do(act)
         python.act(act)
+        if act[0] == "move":
+            faults = [f"fault.{each.check}" for each in python.editor.faults]
+            assert opened.number("onpath.simulation.followed.fault?.reasons ?? []") == faults
+        if act[0] == "drop":
+            doubts = [each.reason.code for each in ambiguities(python.editor.curve)]
+            assert opened.number("onpath.simulation.followed.doubts") == doubts
         if act[0] == "advance":
+            table = opened.number(TABLE)
+            assert table == python.editor.table[: len(table)].tolist()
             found = np.array(opened.number(LOGGED))
             np.testing.assert_allclose(found, np.array(python.rows()), rtol=0, atol=BENDS)
-            for seen, side in zip(opened.number(DISTANCES), python.sides, strict=True):
-                assert side.distance() - 1e-5 <= seen <= side.gap() + 1e-12
+            seen = zip(python.sides, opened.number(DISTANCES), opened.number(STATES), strict=True)
+            for side, distance, state in seen:
+                assert side.distance() - 1e-5 <= distance <= side.gap() + 1e-12
+                side.state = np.array(state[: len(side.state)])
     assert opened.number("complaints") == []
     opened.page.close()
 
