@@ -10,7 +10,7 @@ from string import Template
 
 import numpy as np
 
-from onpath.app.exports.controller.recorded_runs import RecordedRun, recorded_runs
+from onpath.app.exports.controller.recorded_runs import SEGMENT, RecordedRun, recorded_runs
 from onpath.assets import asset_path
 from onpath.models.arrays import Array
 from onpath.models.control.laws.own import law_title
@@ -78,11 +78,14 @@ def controller_files(design: Design, robot: str, stem: str) -> dict[str, str]:
     name = c_name(stem)
     runs = recorded_runs(design)
     values = _values(design, robot, name) | {
+        "segment": str(SEGMENT),
         "header": f"{stem}.h",
         "source": f"{stem}.c",
         "replay": f"{stem}_replay.c",
     }
-    values["runs"] = "\n\n".join(_run(f"run{i}", each) for i, each in enumerate(runs, 1))
+    layout = design.functions.state
+    written = [_run(f"run{i}", each, layout, name) for i, each in enumerate(runs, 1)]
+    values["runs"] = "\n\n".join(written)
     values["calls"] = "\n".join(_call(f"run{i}", each) for i, each in enumerate(runs, 1))
     return {
         f"{stem}.h": _filled("law.h", values),
@@ -298,11 +301,17 @@ _PIECES = """    double pieces[COLUMNS];
 _EVALUATION = {False: _SERIES, True: _PIECES}
 
 
-def _run(name: str, run: RecordedRun) -> str:
-    rows = ",\n".join(c_array(row.tolist()) for row in run.rows)
-    return f"static const double {name}[{len(run.rows)}][1 + 2 * N + M] = {{\n{rows}\n}};"
+def _run(run: str, recorded: RecordedRun, layout: Layout, name: str) -> str:
+    rows = ",\n".join(c_array(row.tolist()) for row in recorded.rows)
+    text = f"static const double {run}[{len(recorded.rows)}][1 + 2 * N + M] = {{\n{rows}\n}};"
+    if not recorded.states:
+        return text
+    states = _structs(layout, recorded.states)
+    return f"{text}\n\nstatic const {name}_state {run}_states[] = {states};"
 
 
-def _call(name: str, run: RecordedRun) -> str:
-    has_v, theta = int(run.has_v), c_number(run.theta)
-    return f'    wrong |= replay("{run.title}", {name}, {len(run.rows)}, {has_v}, {theta});'
+def _call(run: str, recorded: RecordedRun) -> str:
+    states = f"{run}_states" if recorded.states else "NULL"
+    has_v, theta = int(recorded.has_v), c_number(recorded.theta)
+    given = f'"{recorded.title}", {run}, {len(recorded.rows)}, {states}, {has_v}, {theta}'
+    return f"    wrong |= replay({given});"

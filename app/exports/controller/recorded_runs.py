@@ -18,6 +18,7 @@ from onpath.models.studies.scheduled_run import ScheduledRun
 from onpath.models.systems.parameters import Parameters
 
 DURATION, HOLD = 0.3, (0.1, 0.2)  # [s]
+SEGMENT = 30  # steps
 COUNTS = 2000.0  # steps of encoders, if the settings have none
 
 
@@ -29,12 +30,15 @@ class RecordedRun:
         title: what it shows, in English.
         rows: t [s], q, v and torque [N m] of each step, (1 + steps, 1 + 2 n + m); those of the
             first row are at the start.
+        states: of the controller after every `SEGMENT` steps, under composite control, whose
+            filters are stable only together with the link: alone, they would amplify rounding.
         has_v: whether v is measured.
         theta: of the closest point at the start, [rad].
     """
 
     title: str
     rows: Array
+    states: list[Array]
     has_v: bool
     theta: float
 
@@ -82,10 +86,14 @@ def _recorded(design: Design, parameters: Parameters, title: str) -> RecordedRun
         q = readings(robot.system, kind, kernel.settings, settings, q)
     t = dt * np.arange(len(rows), dtype=float)
     measured = np.hstack([t[:, None], q, v, torque])[seen]
-    if kind.delay:
-        steps = Steps(design.functions, design.settings(curve), curve.table())
-        known = kernel.state.unpack(state)
-        steps.start(0.0, known["q"], known["v"], theta)
-        for row, place, rate in zip(measured, q[seen], v[seen], strict=True):
-            row[-robot.system.m :] = steps.step(row[0], place, None if kind.encoder else rate)
-    return RecordedRun(title, np.vstack([start, measured]), not kind.encoder, theta)
+    known, states = kernel.state.unpack(state), list[Array]()
+    steps = Steps(design.functions, design.settings(curve), curve.table())
+    steps.start(0.0, known["q"], known["v"], theta)
+    for i, (row, place, rate) in enumerate(zip(measured, q[seen], v[seen], strict=True), 1):
+        given_torque = steps.step(row[0], place, None if kind.encoder else rate)
+        if kind.delay:
+            row[-robot.system.m :] = given_torque
+        if design.kind.output == "composite" and i % SEGMENT == 0:
+            states.append(steps.state)
+    rows = np.vstack([start, measured])
+    return RecordedRun(title, rows, states, not kind.encoder, theta)

@@ -11,12 +11,13 @@
 #include <stddef.h>
 #include <stdio.h>
 
-enum { N = ${upper}_COORDINATES, M = ${upper}_MOTORS };
+enum { N = ${upper}_COORDINATES, M = ${upper}_MOTORS, SEGMENT = $segment };
 
 $runs
 
-static int replay(const char *what, const double (*rows)[1 + 2 * N + M], int count, int has_v,
-                  double theta)
+/* states: NULL, or those of the controller after every SEGMENT steps, with which it goes on. */
+static int replay(const char *what, const double (*rows)[1 + 2 * N + M], int count,
+                  const ${name}_state *states, int has_v, double theta)
 {
     ${name}_controller c;
     double torque[M], largest = 0.0, range = 0.0, share;
@@ -26,7 +27,12 @@ static int replay(const char *what, const double (*rows)[1 + 2 * N + M], int cou
     ${name}_start(&c, rows[0][0], rows[0] + 1, rows[0] + 1 + N, theta);
     for (i = 1; i < count; i++) {
         const double *row = rows[i];
-        int code = ${name}_step(&c, row[0], row + 1, has_v ? row + 1 + N : NULL, torque);
+        int code;
+
+        if (states != NULL && i > SEGMENT && i % SEGMENT == 1) {
+            c.state = states[i / SEGMENT - 1];
+        }
+        code = ${name}_step(&c, row[0], row + 1, has_v ? row + 1 + N : NULL, torque);
         if (code != ${upper}_OK) {
             printf("%s: refused in row %d with code %d\n", what, i, code);
             return 1;

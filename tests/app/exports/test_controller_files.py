@@ -68,6 +68,14 @@ def test_replays_of_other_robots_are(tmp_path: Path, robot: str) -> None:
 
 
 @pytest.mark.thorough
+@pytest.mark.parametrize("robot", ["five_bar", "flexible", "cart_pendulum"])
+def test_with_other_flags_they_are_within_the_stated_share(tmp_path: Path, robot: str) -> None:
+    """The replay fails beyond 1e-9; with products and sums contracted, there are differences."""
+    file = onpath.controller(robot).save(tmp_path / "law.c")
+    compiled(COMPILERS[0], file, "-O3", "-march=native", "-ffp-contract=fast")
+
+
+@pytest.mark.thorough
 def test_drawings_and_laws_of_one_s_own_are_replayed(tmp_path: Path) -> None:
     pytest.importorskip("svgpathtools")
     from onpath.assets import asset_path
