@@ -121,3 +121,8 @@ class Chain:
         """Low and high ends of the coordinates, shape (n,) each, infinite without limits."""
         ends = np.array([(joint.low, joint.high) for joint in self.joints])
         return ends[:, 0], ends[:, 1]
+
+    @property
+    def limited(self) -> list[int]:
+        """Numbers of the joints whose travel is limited."""
+        return [i for i, joint in enumerate(self.joints) if joint.high - joint.low < math.inf]

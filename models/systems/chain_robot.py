@@ -59,6 +59,7 @@ from onpath.models.systems.rigid_chain import (
     chain_frames,
     chain_inertias,
     mass_matrix,
+    masses_at,
     potential_energy,
     solved,
     tip_of,
@@ -190,7 +191,7 @@ def parameters_of(source: ChainSource) -> type[ChainParameters]:
     planar = len(source.axes) == 2
     if not source.redundant:
         return ChainParameters if planar else SpatialChainParameters
-    if any(joint.high - joint.low < math.inf for joint in source.chain.joints):
+    if source.chain.limited:
         return LimitedPlanarParameters if planar else LimitedSpatialParameters
     return RedundantPlanarParameters if planar else RedundantSpatialParameters
 
@@ -304,9 +305,8 @@ def _beside(jacobian: ca.SX, weight: ca.SX, motion: ca.SX) -> ca.SX:
 
 def _spared(source: ChainSource, q: ca.SX) -> ca.SX:
     """The diagonal of E for g = 1, (n, 1); see this module's docstring."""
-    low, high = source.chain.limits
-    limited = [i for i in range(source.chain.n) if high[i] - low[i] < math.inf]
-    inertias, widths = _inertias_at_home(source)[limited], (high - low)[limited]
+    (low, high), limited = source.chain.limits, source.chain.limited
+    inertias, widths = np.diag(_mass_at_home(source))[limited], (high - low)[limited]
     mean = float((inertias * widths**2).mean())
     weights = ca.SX(ca.DM.zeros(source.chain.n))
     for i, width in zip(limited, widths.tolist(), strict=True):
@@ -315,17 +315,9 @@ def _spared(source: ChainSource, q: ca.SX) -> ca.SX:
     return weights
 
 
-def _inertias_at_home(source: ChainSource) -> Array:
-    """The diagonal of M at home, (n,)."""
-    return np.diag(_mass_at_home(source))
-
-
 def _mass_at_home(source: ChainSource) -> Array:
     """M at home, (n, n)."""
-    chain, one = source.chain, ca.SX(1)
-    frames = chain_frames(chain, ca.SX(ca.DM(source.home)))
-    mass = mass_matrix(chain, frames, chain_inertias(chain, one, ca.SX(0)), one)
-    return ca.evalf(ca.densify(mass)).full()
+    return masses_at(source.chain, np.array([source.home]))[0]
 
 
 def chain_grip(source: ChainSource, slope: Array) -> Grip:
@@ -359,16 +351,17 @@ def chain_robot(source: ChainSource) -> Robot:
     gains = _gains(kind)
     reached = ca.Function("reached", [system.q], [system.output, ca.densify(jacobian)])
 
+    def numbers(chosen: ChainParameters, **values: float) -> Array:
+        return system.parameter_vector(values | {name: getattr(chosen, name) for name in gains})
+
     def plant(parameters: Parameters) -> Array:
         chosen = own_parameters(kind, parameters)
-        values = {"inertia": 1.0, "weight": 1.0, "payload": chosen.payload}
-        return system.parameter_vector(values | {name: getattr(chosen, name) for name in gains})
+        return numbers(chosen, inertia=1.0, weight=1.0, payload=chosen.payload)
 
     def model(parameters: Parameters) -> Array:
         chosen = own_parameters(kind, parameters)
         inertia, weight = 1 + chosen.error_inertia / 100, 1 + chosen.error_gravity / 100
-        values = {"inertia": inertia, "weight": weight, "payload": 0.0}
-        return system.parameter_vector(values | {name: getattr(chosen, name) for name in gains})
+        return numbers(chosen, inertia=inertia, weight=weight, payload=0.0)
 
     def inverse(y: ca.SX) -> ca.SX:
         q = ca.SX(ca.DM(source.home))
@@ -390,10 +383,10 @@ def chain_robot(source: ChainSource) -> Robot:
     at_home = float(ca.evalf(absolute(ca.DM(source.home))))
     slope = np.array(reached(ca.DM(source.home))[1])
     regularity = spread / at_home
-    for i, joint in enumerate(chain.joints):
-        if (width := joint.high - joint.low) < math.inf:
-            left = ca.fmin(system.q[i] - joint.low, joint.high - system.q[i])
-            regularity = ca.fmin(regularity, left / (NEAR_LIMIT * width))
+    for i in chain.limited:
+        low, high = chain.joints[i].low, chain.joints[i].high
+        left = ca.fmin(system.q[i] - low, high - system.q[i])
+        regularity = ca.fmin(regularity, left / (NEAR_LIMIT * (high - low)))
     return Robot(
         system=system,
         plant=plant,
@@ -419,9 +412,9 @@ def chain_robot(source: ChainSource) -> Robot:
 def _limit_stops(chain: Chain, q: ca.SX) -> tuple[StopCondition, ...]:
     """A joint passes a limit, if any has limits."""
     beyond, (low, high) = ca.SX(0), chain.limits
-    for i, joint in enumerate(chain.joints):
-        if joint.high - joint.low < math.inf:
-            beyond = ca.fmax(beyond, ca.logic_or(q[i] < joint.low, q[i] > joint.high))
+    for i in chain.limited:
+        joint = chain.joints[i]
+        beyond = ca.fmax(beyond, ca.logic_or(q[i] < joint.low, q[i] > joint.high))
 
     def limit_passed(q: Array | None, parameters: Parameters) -> Message:
         if q is None:

@@ -24,6 +24,7 @@ from onpath.models.paths.path_design import USUAL_RADIUS
 from onpath.models.robot_files.chain import Chain
 from onpath.models.robot_files.guesses import Guess
 from onpath.models.systems.drawing import Point
+from onpath.models.systems.rows import Rows
 from onpath.models.systems.system import GRAVITY
 
 
@@ -222,6 +223,14 @@ def mass_matrix(chain: Chain, frames: ChainFrames, inertias: list[Inertia], fact
             mass[i, j] = mass[j, i] = (force if chain.joints[j].slides else torque)[2]
         beyond = here.moved(frames.turns[i], frames.steps[i])
     return mass
+
+
+def masses_at(chain: Chain, rows: Array) -> Array:
+    """M at configurations, (k, n) -> (k, n, n)."""
+    q, one = ca.SX.sym("q", chain.n), ca.SX(1)
+    inertias = chain_inertias(chain, one, ca.SX(0))
+    mass = mass_matrix(chain, chain_frames(chain, q), inertias, one)
+    return Rows([q], ca.vec(mass))(rows).reshape(-1, chain.n, chain.n)
 
 
 def bias_forces(

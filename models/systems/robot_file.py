@@ -42,12 +42,10 @@ from onpath.models.systems.home_pose import (
 from onpath.models.systems.rigid_chain import (
     ChainSource,
     chain_frames,
-    chain_inertias,
-    mass_matrix,
+    masses_at,
     tip_of,
 )
 from onpath.models.systems.robots import RobotEntry
-from onpath.models.systems.rows import Rows
 
 POSES = 100  # random ones at which masses and friction are checked
 LEAST_CIRCLE = 0.015  # [m], of paths that must be possible
@@ -282,13 +280,9 @@ def _with_rotors(chain: Chain, home: Array) -> tuple[Chain, tuple[Guess, ...]]:
 
 def _masses(chain: Chain, home: Array) -> Array:
     """M(q) at home and at random configurations, (POSES + 1, n, n)."""
-    q, one = ca.SX.sym("q", chain.n), ca.SX(1)
-    inertias = chain_inertias(chain, one, ca.SX(0))
-    mass = mass_matrix(chain, chain_frames(chain, q), inertias, one)
     low, high = (ends.clip(-np.pi, np.pi) for ends in chain.limits)
     share = np.random.default_rng(1).random((POSES, chain.n))
-    rows = np.concatenate([home[None], low + share * (high - low)])
-    return Rows([q], ca.vec(mass))(rows).reshape(-1, chain.n, chain.n)
+    return masses_at(chain, np.concatenate([home[None], low + share * (high - low)]))
 
 
 def _steps(decay: float) -> int:
