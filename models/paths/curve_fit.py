@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 C = TypeVar("C", bound=Curve)
 SAMPLES = 256  # points at equal arc length to which a series is fitted
+FINE = 16 * SAMPLES  # straight lines whose lengths are summed
 SHORTEST = 0.02  # [m], shortest total length of a path
 DENSE = 2048  # points that represent a curve or a line
 FINE, DENSEST = 32, 40_000  # points between two given ones, and all of them, of a smooth line
@@ -292,7 +293,7 @@ def _chords(points: Array) -> Array:
 
 def _equal_arc(spline: CubicSpline, endpoint: bool) -> Array:
     """`SAMPLES` points of a spline at equal arc length, shape (SAMPLES, 2), [m]."""
-    knots = _even(spline.x[0], spline.x[-1], 16 * SAMPLES + 1)
+    knots = _even(spline.x[0], spline.x[-1], FINE + 1)
     points = np.asarray(spline(knots), dtype=np.float64)
     s = _arc_length(points)
     even = _even(0, s[-1], SAMPLES, endpoint=endpoint)

@@ -117,6 +117,12 @@ def _lowest(robot: Robot, closed: bool) -> Scan:
     return Scan(ca.Function("step", inputs, [ca.densify(after), ca.SX(0, 1)]), p)
 
 
+def scan_of(stride: int, inputs: list[ca.SX], outputs: list[ca.SX]) -> Scan:
+    """A scan from the symbols of its inputs and the expressions of its outputs."""
+    step = ca.Function("step", inputs, [ca.densify(each) for each in ca.cse(outputs)])
+    return Scan(step, stride)
+
+
 def _away(y: ca.SX, point: ca.SX) -> ca.SX:
     """The distance of y from a point, and the point."""
     return ca.vertcat(ca.sqrt(ca.dot(point - y, point - y)), point)

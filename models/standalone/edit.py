@@ -7,12 +7,15 @@ scans.
 from __future__ import annotations
 
 import casadi as ca
+import numpy as np
 
+from onpath.models.arrays import Array
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.page_functions import lift_of, placed, view_of
 from onpath.models.closed_loop.wasm_loop import Scan
 from onpath.models.control.bend_limit import PER_PIECE as TURNS
-from onpath.models.paths.curves import GRID
+from onpath.models.paths.curve_fit import SAMPLES as FITTED
+from onpath.models.paths.curves import GRID, ORDERS, TERMS, from_terms, terms_of
 from onpath.models.paths.path_checks import (
     DRAWING_CHECKS,
     FINER,
@@ -26,10 +29,9 @@ from onpath.models.paths.path_checks import (
     sampled_theta,
 )
 from onpath.models.paths.path_design import REACH
-from onpath.models.paths.projection import LocalCurve
+from onpath.models.paths.projection import LocalCurve, basis
 from onpath.models.paths.spline_curves import PER_PIECE
-from onpath.models.standalone.curve_scans import scan_on
-from onpath.models.standalone.fit import scan_of
+from onpath.models.standalone.curve_scans import scan_of, scan_on
 from onpath.models.systems.robots import Robot, margin_of
 
 CHECKS = (*POINT_CHECKS, "narrow")
@@ -43,6 +45,7 @@ def edit_functions(robot: Robot, kind: Kind) -> dict[str, ca.Function]:
     spot: a point z of the path's plane -> its position in the picture, (2, 1)
     planar: (z, from, to) -> z moved as the picture's point moves
     toward: (z, target, share) -> that share of the way, within ±REACH
+    table: of series: see `_table`
     """
     z, target, share = ca.SX.sym("z", 2), ca.SX.sym("target", 2), ca.SX.sym("share")
     begin, end = ca.SX.sym("begin", 2), ca.SX.sym("end", 2)
@@ -50,11 +53,27 @@ def edit_functions(robot: Robot, kind: Kind) -> dict[str, ca.Function]:
     axes = ca.horzcat(*(lift(ca.SX(ca.DM(each)), True) for each in ([1, 0], [0, 1])))
     moved = z + ca.inv(placed(robot, axes, seen)) @ (end - begin)
     limited = ca.fmax(ca.fmin(z + share * (target - z), REACH), -REACH)
-    return {
+    functions = {
         "spot": ca.Function("spot", [z], [placed(robot, lift(z, False), seen) + offset]),
         "planar": ca.Function("planar", [z, begin, end], [moved]),
         "toward": ca.Function("toward", [z, target, share], [limited]),
     }
+    return functions if kind.spline else functions | {"table": _table(kind.closed)}
+
+
+def _table(closed: bool) -> ca.Function:
+    """Sums over samples z at evenly spaced θ of z times the basis at θ, (2, TERMS) -> `Curve.table`
+    of the series that fits them best; see assets/web/simulation/fit.ts."""
+    sums, count = ca.SX.sym("sums", 2, TERMS), terms_of(closed)
+    theta = np.linspace(-np.pi, np.pi, FITTED, endpoint=not closed)
+    x = ca.SX.sym("x")
+    values = ca.Function("basis", [x], [basis(x, closed)])(theta[None]).full()[:count]
+    gram: Array = np.asarray(np.linalg.inv(values @ values.T), dtype=float)
+    gram[np.abs(gram) < 1e-15] = 0.0
+    terms = sums[:, :count] @ ca.sparsify(ca.DM(gram))
+    series = from_terms(closed, np.eye(count)).series  # (ORDERS, TERMS, count)
+    orders = [terms @ ca.sparsify(ca.DM(series[order].T)) for order in range(ORDERS)]
+    return ca.Function("table", [sums], [ca.densify(ca.vertcat(*orders))])
 
 
 def edit_scans(robot: Robot, kind: Kind) -> dict[str, Scan]:

@@ -18,7 +18,6 @@ from onpath.app.exports.standalone.figure_form import figure_form
 from onpath.app.exports.standalone.figure_module import (
     design_of,
     figure_module,
-    fit_name,
     kind_name,
 )
 from onpath.app.exports.standalone.figure_words import figure_words
@@ -45,8 +44,9 @@ from onpath.models.control.laws.own import short_name
 from onpath.models.control.laws.registry import law_named
 from onpath.models.control.settable import specs, value_of
 from onpath.models.control.sides import RIGHT, SIDES
+from onpath.models.paths import curve_fit
 from onpath.models.paths.curve_faults import ambiguities
-from onpath.models.paths.curves import TERMS, Curve
+from onpath.models.paths.curves import HARMONICS, Curve
 from onpath.models.paths.drawing_design import DrawingDesign, bump
 from onpath.models.paths.path_checks import DRAWING_CHECKS, FINER, POINT_CHECKS, SAMPLES
 from onpath.models.paths.path_design import PathDesign
@@ -54,7 +54,6 @@ from onpath.models.paths.spline_curves import GRAIN, SplineCurve
 from onpath.models.robot_files.xml_elements import shown
 from onpath.models.standalone.curve_scans import GRID, REFINEMENTS
 from onpath.models.standalone.edit import ROW
-from onpath.models.standalone.fit import FINE, PIECE
 from onpath.models.systems.efforts import efforts
 from onpath.models.systems.law_parameters import LEVEL_SET
 from onpath.models.systems.parameters import look_ahead_time, time_step
@@ -132,6 +131,7 @@ def common_data(figure: FigureChoice, words: Words, numbers: Mapping[str, Any]) 
         "poles": numbers["poles"]
         | {"gains": [kernel.settings.slices[f"K{i}"].start for i in range(1, 6)]},
         "critical": _limits(figure, numbers["critical"], words),
+        "fit": FIT,
         "edit": _EDIT,
         "module": numbers["module"],
     }
@@ -144,10 +144,14 @@ POSES = 13
 PLOTTED = ("speed", "theta_rate", "xi", "xi_rate", "u", "force")
 """Fields of a log row that are plotted, besides those that are drawn."""
 NUDGE = 0.001  # [m], as app/view/keys.py has it
+FIT = {
+    "samples": curve_fit.SAMPLES,
+    "fine": curve_fit.FINE,
+    "harmonics": HARMONICS,
+    "closest": curve_fit.APART,
+    "shortest": curve_fit.SHORTEST,
+}
 _EDIT = {
-    "piece": PIECE,
-    "fine": FINE,
-    "sums": 3 + 2 * TERMS,
     "row": ROW,
     "grid": GRID,
     "refinements": REFINEMENTS,
@@ -286,7 +290,6 @@ def _path(figure: FigureChoice, name: str, curve: Curve) -> dict[str, Any]:
         "settings": figure.settings(figure.planned, curve).tolist(),
         "points": design.points.tolist() if figure.edits else [],
         "handles": _handles(design) if figure.edits else [],
-        "fit": fit_name(design),
     }
 
 

@@ -21,12 +21,6 @@ from onpath.models.paths.path_design import PathDesign, presets
 from onpath.models.paths.spline_curves import SplineCurve
 from onpath.models.standalone.curve_scans import beyond_function, curve_scans
 from onpath.models.standalone.edit import edit_functions, edit_scans
-from onpath.models.standalone.fit import (
-    arc_scan,
-    resample_scan,
-    spline_function,
-    table_function,
-)
 from onpath.models.standalone.states import begin_function, change_function
 
 Parts = tuple[dict[str, ca.Function], dict[str, Scan]]
@@ -48,11 +42,6 @@ def kind_name(figure: FigureChoice, curve: Curve) -> str:
     return str(list(_kinds(figure)).index(kinds))
 
 
-def fit_name(design: PathDesign) -> str:
-    """The name of the function that fits a curve to as many points, after "spline."."""
-    return f"{'closed' if design.curve.closed else 'open'}{len(design.points)}"
-
-
 def figure_module(figure: FigureChoice) -> bytes:
     """Loops, functions and scans, named as the page calls them: "loop0.0" is the first law's."""
     functions, scans, loops = dict[str, ca.Function](), dict[str, Scan](), dict[str, Kernel]()
@@ -69,8 +58,7 @@ def figure_module(figure: FigureChoice) -> bytes:
         loops |= {f"{each}.{name}": kernel for each, kernel in loops_of(figure, curve).items()}
         functions |= {f"{each}.{name}": function for each, function in (shown | edited).items()}
         scans |= {f"{each}.{name}": scan for each, scan in steps.items()}
-    shared, steps = _shared(figure)
-    return wasm_of(functions | shared, loops, scans | steps)
+    return wasm_of(functions, loops, scans)
 
 
 def _changes(figure: FigureChoice, kernels: Sequence[Kernel]) -> dict[str, ca.Function]:
@@ -90,21 +78,6 @@ def _editing(figure: FigureChoice, kind: Kind, kernels: Sequence[Kernel]) -> Par
     functions, scans = edit_functions(robot, kind), edit_scans(robot, kind)
     for i, kernel in enumerate(kernels):
         functions[f"begin{i}"] = begin_function(robot, kind, kernel)
-    if not kind.spline:
-        functions["table"] = table_function(kind.closed)
-        scans["resample"] = resample_scan(kind.closed)
-    return functions, scans
-
-
-def _shared(figure: FigureChoice) -> Parts:
-    """Functions and scans that serve all kinds of paths."""
-    functions, scans, paths = dict[str, ca.Function](), dict[str, Scan](), figure.paths
-    if figure.edits:
-        scans["arc"] = arc_scan()
-        series = {n: curve for n, curve in paths.items() if not isinstance(curve, SplineCurve)}
-        for design in (design_of(name, curve) for name, curve in series.items()):
-            count = len(design.points)
-            functions[f"spline.{fit_name(design)}"] = spline_function(design.curve.closed, count)
     return functions, scans
 
 

@@ -16,6 +16,9 @@ type Texts<Name extends string> = Record<Name, string>
  * delay in intervals, whether the position along the path is controlled, and where K1 to K5 are in the settings. */
 export interface PoleNumbers { interval: number; ahead: number; delay: number; position: boolean; gains: number[] }
 
+/** Of the fit of a series: samples, intervals between knots that are summed, harmonics, and least lengths [m]. */
+export type FitNumbers = Numbers<"samples" | "fine" | "harmonics" | "closest" | "shortest">
+
 export interface SideData { law: number; side: 0 | 1 }
 
 export interface LawData extends Texts<"title" | "text"> {
@@ -29,7 +32,7 @@ export interface LawData extends Texts<"title" | "text"> {
     stops: string[]
 }
 
-export interface PathData extends Texts<"label" | "kind" | "fit"> {
+export interface PathData extends Texts<"label" | "kind"> {
     closed: boolean
     dimension: number
     doubts: string[]
@@ -121,5 +124,6 @@ export interface FigureData extends Texts<"language" | "module"> {
     /** For each path the least α on it from which on the zero dynamics are unstable, and what is said below and beyond. */
     critical: { limit: number; notes: [string, string] }[]
     poles: PoleNumbers
-    edit: Numbers<"piece" | "fine" | "sums" | "row" | "grid" | "refinements" | "turns" | "grain" | "halvings" | "blend" | "nudge">
+    fit: FitNumbers
+    edit: Numbers<"row" | "grid" | "refinements" | "turns" | "grain" | "halvings" | "blend" | "nudge">
 }

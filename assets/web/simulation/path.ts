@@ -3,13 +3,13 @@
 
 import type { PathShape, Vector } from "../core/engine"
 import type { FigureData, PathData, Point } from "../core/figure_data"
+import { lengthOf, products } from "./fit"
 import type { Kernels } from "./kernels"
 
 const [LINE, OUTLINE] = [600, 240] // pieces of a line through points of a series, and of its outline
-const ARC = 3 // numbers of a row of arc length
 const ORDERS = 4 // the curve and its derivatives
 const MOST_VALUES = 12 // of a curve in space
-const WORK = 16 // numbers of work that functions share
+const WORK = 64 // numbers of work that functions share
 
 /** Why a curve cannot be followed: keys of messages, and places in the picture; and its length if
  * it is too short, [mm]. Without places, there is no such curve. */
@@ -45,14 +45,14 @@ export class Path {
     private readonly shown = [this.kernels.put(this.flat), this.kernels.put(this.data.table)] as const
     private readonly tried = [this.kernels.put(this.flat), this.kernels.put(this.data.table)] as const
     private readonly before = this.kernels.put(this.data.table)
-    private readonly work = this.kernels.room(WORK + this.edit.piece * (this.flat.length + 4) + this.edit.sums)
+    private readonly work = this.kernels.room(WORK)
     private readonly values = this.kernels.room(MOST_VALUES)
     private readonly state = this.kernels.room(ORDERS + this.figure.sizes.p)
     /** Points of a series, from which the search for the closest one begins. */
     private readonly grid = this.kernels.room(this.data.pieces ? 0 : this.edit.grid * this.figure.sizes.p)
     private readonly rows = this.kernels.room(
         Math.max(
-            this.flat.length && ARC * this.edit.fine, this.edit.row * (this.data.samples + 1),
+            this.edit.row * (this.data.samples + 1),
             ORDERS * this.data.dimension * (Math.max(this.intervals, LINE) + 1),
         ),
     )
@@ -284,29 +284,13 @@ export class Path {
 
     /** Fit a series to the tried points. */
     private fit(): Fault | null {
-        const { kernels, work, edit, data } = this
-        const { numbers } = kernels
-        const arc = work + edit.piece * (data.points.length + (data.closed ? 1 : 0))
-        const sums = arc + 5
-        kernels.call(`spline.${data.fit}`, this.tried[0], work, arc, sums)
-        const reason = [null, "standalone.coincide", "error.path_too_short"][numbers[sums]!]
-        if (reason) return { reasons: [reason], marks: [], length: numbers[sums + 1]! }
-        this.alongPieces("arc", arc, arc)
-        numbers.fill(0, sums, sums + edit.sums)
-        numbers.set([0, numbers[arc + 1]!, numbers[arc + 4]!], sums)
-        this.alongPieces(`resample.${data.kind}`, sums, arc)
-        this.call("table", sums, this.tried[1])
+        const { kernels, work, figure, tried, data } = this
+        const points = data.points.map((_, i) => kernels.pair(tried[0] + 2 * i))
+        const found = products(points, data.closed, figure.fit)
+        if (typeof found === "string") return { reasons: [found], marks: [], length: 1e3 * lengthOf(points) }
+        kernels.numbers.set(found, work)
+        this.call("table", work, tried[1])
         return null
-    }
-
-    /** A scan along the pieces of a spline, whose last one only ends the others. */
-    private alongPieces(name: string, state: number, end: number): void {
-        const { work, edit, kernels } = this
-        for (let place = work, row = this.rows; place < end - edit.piece; place += edit.piece) {
-            const count = kernels.numbers[place + 1]!
-            if (count) kernels.loop(name, [state, place, row, row], count)
-            row += ARC * count
-        }
     }
 
     /** Whether a robot could follow the tried curve. */

@@ -4,85 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
-from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.simulation import kind_of
-from onpath.models.closed_loop.wasm_loop import Scan
-from onpath.models.errors import CodedError
 from onpath.models.evaluated import evaluated
 from onpath.models.paths.curve_blend import blend
 from onpath.models.paths.curve_faults import ambiguities, curve_faults
-from onpath.models.paths.curve_fit import closed_through, open_through
-from onpath.models.paths.curves import TERMS, Curve, SeriesCurve, circle, ellipse, from_terms
+from onpath.models.paths.curve_fit import closed_through
+from onpath.models.paths.curves import Curve, SeriesCurve, circle, ellipse, from_terms
 from onpath.models.paths.path_checks import SAMPLES
 from onpath.models.paths.path_design import REACH, presets
 from onpath.models.standalone.edit import CHECKS, ROW, edit_scans
-from onpath.models.standalone.fit import (
-    arc_scan,
-    resample_scan,
-    spline_function,
-    table_function,
-)
 from onpath.models.systems.catalogue import ROBOTS
-
-
-def scanned(
-    scan: Scan, state: Array, constants: Array, rows: Array, count: int
-) -> tuple[Array, Array]:
-    """The last state, and all results as columns."""
-    if not count:
-        return state, np.zeros((scan.step.numel_out(1), 0))
-    given = np.tile(constants, (1, count))
-    states, results = scan.step.mapaccum(count)(state, given, rows)
-    return states.full()[:, -1], results.full()
-
-
-def fitted(points: Array, closed: bool) -> tuple[Array, float]:
-    """The table of the curve through control points, and how many samples it was made of."""
-    pieces, state, bad = (each.full() for each in spline_function(closed, len(points))(points.T))
-    assert bad[0] == 0
-    state, arcs = state.ravel(), list[tuple[Array, Array]]()
-    for i, count in enumerate(pieces[1, :-1].astype(int)):
-        pair = pieces[:, i : i + 2]
-        state, rows = scanned(arc_scan(), state, pair, np.zeros((0, count)), count)
-        arcs.append((pair, rows))
-    sums = np.zeros(3 + 2 * TERMS)
-    sums[1:3] = state[1], state[4]
-    for pair, rows in arcs:
-        sums, _ = scanned(resample_scan(closed), sums, pair, rows, rows.shape[1])
-    return table_function(closed)(sums).full().ravel(order="F"), float(sums[0])
-
-
-@pytest.mark.thorough
-@settings(max_examples=12)
-@given(st.booleans(), st.integers(3, 16), st.randoms(use_true_random=False))
-def test_a_curve_is_fitted_as_in_the_lab(closed: bool, count: int, random: Any) -> None:
-    points = np.array([[random.uniform(-0.2, 0.2) for _ in range(2)] for _ in range(count)])
-    ring = np.vstack([points, points[:1]])
-    assume(np.linalg.norm(np.diff(ring, axis=0), axis=1).min() > 2e-4)
-    table, samples = fitted(points, closed)
-    expected = (closed_through if closed else open_through)(points)
-    assert samples == 256
-    np.testing.assert_allclose(table, expected.table(), atol=1e-10)
-
-
-@pytest.mark.thorough
-def test_points_that_coincide_and_short_paths_are_refused() -> None:
-    points = presets()["circle"].points.copy()
-    points[3] = points[2] + 5e-5
-    assert spline_function(True, len(points))(points.T)[2][0] == 1
-    short = np.array([[0.0, 0.0], [0.015, 0.0]])
-    assert spline_function(False, 2)(short.T)[2].full().ravel() == pytest.approx([2, 15])
-    with pytest.raises(CodedError):
-        open_through(short)
-    assert spline_function(False, 2)(2 * short.T)[2][0] == 0
-
 
 Checks = Callable[[Curve], dict[str, Array]]
 """Curve -> check -> where it fails."""
