@@ -22,6 +22,8 @@ Order = Literal[
     "send_step",
     "send_route",
     "set_aside",
+    "give_place",
+    "keep_apart",
     "remove",
     "delete",
     "end_standing",

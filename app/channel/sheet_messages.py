@@ -85,6 +85,10 @@ class LeaveClass(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is"
     """Leave the class; answered by `SeatAnswer`."""
 
 
+class AskPlace(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="ask_place"):
+    """Ask the teacher for the place of the same name that is away; see `ClassMessage.away`."""
+
+
 class Teach(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="teach"):
     """Open the teacher's page with the teacher's key.
 
@@ -94,7 +98,7 @@ class Teach(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag
     key: Typed
 
 
-SeatRequest = JoinClass | LeaveClass | Teach
+SeatRequest = JoinClass | LeaveClass | AskPlace | Teach
 """What changes the lab's place in the class."""
 
 Request = (
@@ -365,6 +369,8 @@ class ClassMessage(Struct, frozen=True, kw_only=True, tag_field="is", tag="class
         longest: how many visible characters a nickname may have.
         stored: what is stored of a student, and for how long.
         privacy: the address of the site's privacy notice; empty if it has none.
+        away: the nickname of somebody who is away, and may be the same student; else empty.
+        asked: whether the teacher has been asked to give that place back.
     """
 
     place: Literal["none", "elsewhere", "guest", "member"]
@@ -373,6 +379,8 @@ class ClassMessage(Struct, frozen=True, kw_only=True, tag_field="is", tag="class
     longest: int = 0
     stored: str = ""
     privacy: str = ""
+    away: str = ""
+    asked: bool = False
 
 
 class SeatAnswer(Struct, frozen=True, kw_only=True, tag_field="is", tag="seat"):
@@ -384,6 +392,6 @@ class SeatAnswer(Struct, frozen=True, kw_only=True, tag_field="is", tag="seat"):
         address: where the page of the class is, if it is another one; else empty.
     """
 
-    of: Literal["join", "leave", "teach"]
+    of: Literal["join", "leave", "ask_place", "teach"]
     why: str = ""
     address: str = ""

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import hmac
+import re
 import threading
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -129,6 +130,7 @@ class Classroom:
         key: the teacher's key, in the stored form of `app.common.access_codes`.
         code: the class code, the same in every process with this key; it is in the class's address.
         state: everything that is stored; replaced at each change.
+        claims: labs of students who say that a place is theirs whose lab is away -> that lab.
     """
 
     clock: Callable[[], float] = time.monotonic
@@ -136,6 +138,7 @@ class Classroom:
     key: str = field(default_factory=new_code, repr=False)
     code: str = field(init=False)
     state: ClassState = field(default_factory=ClassState)
+    claims: dict[str, str] = field(default_factory=dict[str, str], init=False)
     _lock: threading.RLock = field(default_factory=threading.RLock)
     _door: Admission = field(init=False)
 
@@ -213,6 +216,32 @@ class Classroom:
         with self._lock:
             others = {code: each for code, each in self.state.members.items() if code != lab}
             self.state = replace(self.state, members=others)
+            self.claims.pop(lab, None)
+
+    def former_place(self, lab: str) -> str:
+        """The lab that is away whose student had the nickname that this one asked for; or "".
+
+        Whoever joins under a name that is taken gets a number behind it; see `not_among`.
+        """
+        members = self.state.members
+        own = members.get(lab)
+        name = "" if own is None else re.sub(r" \d+$", "", own.name)
+        if own is None or name == own.name:
+            return ""
+        wanted = comparison_key(name)
+        away = (code for code, each in members.items() if not each.connected and code != lab)
+        return next((code for code in away if comparison_key(members[code].name) == wanted), "")
+
+    def claim(self, lab: str) -> None:
+        """A student says that the former place is the student's own; a teacher decides."""
+        with self._lock:
+            if former := self.former_place(lab):
+                self.claims[lab] = former
+
+    def reject(self, lab: str) -> None:
+        """A student stays somebody else than the one in the former place."""
+        with self._lock:
+            self.claims.pop(lab, None)
 
     def member(self, lab: str) -> Member | None:
         """The member of a lab code, if any."""
@@ -339,6 +368,7 @@ class Classroom:
         with self._lock:
             old = self.state
             orders = replace(old.orders, frozen=False, push=None, pace=None)
+            self.claims.clear()
             self.state = replace(old, members={}, orders=orders, display=Display(), votes=())
             return len(old.members)
 

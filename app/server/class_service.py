@@ -50,6 +50,7 @@ class ClassService:
         self._class, self._registry, self._course = classroom, registry, course
         self._records, self._keeper = records, keeper
         self._visits, self._lost = visits, lost
+        self._places = dict[str, tuple[Visit, Callable[[str], None]]]()  # who asks for one, by lab
         self._attendance = ClassSync(classroom, self._student)
         self._attendance.rounds.start()
         self._class_keeper: ClassKeeper | None = None
@@ -94,12 +95,19 @@ class ClassService:
         member = self._class.member(code)
         return member.name if member else ""
 
-    def seat(self, visit: Visit, code: str, reopen: Callable[[], None]) -> ClassSeat:
+    def seat(
+        self,
+        visit: Visit,
+        code: str,
+        reopen: Callable[[], None],
+        enter: Callable[[str], None] = lambda _: None,
+    ) -> ClassSeat:
         """A lab's place in the class.
 
         Args:
             code: code of the lab.
             reopen: shows the lab on the page anew.
+            enter: shows the lab of another code on the page; raises ValueError.
         """
 
         def teach(key: str) -> str:
@@ -118,9 +126,19 @@ class ClassService:
                 entry.scheduled.lab.post(ReportState(lambda lab: keep(lab, submit)))
             return ""
 
+        def away() -> tuple[str, bool]:
+            former = self._class.member(self._class.former_place(code))
+            return ("" if former is None else former.name), code in self._class.claims
+
+        def ask_place() -> None:
+            self._class.claim(code)
+            self._places[code] = visit, enter
+
         return ClassSeat(
             join=join,
             leave=lambda: self._class.leave(code),
+            away=away,
+            ask_place=ask_place,
             teach=teach,
             code=self._class.code,
         )
@@ -169,6 +187,7 @@ class ClassService:
             why_still=self.followed(chosen).why_still,
             send_setup=send_setup,
             delete=self._delete,
+            give_place=self._give_place,
             forget=self._forget,
             stop=stop,
         )
@@ -185,6 +204,19 @@ class ClassService:
     def _give_up(self) -> None:
         """Send all pages away when another process has the class; they reconnect to that one."""
         self._lost(self._visits())
+
+    def _give_place(self, code: str) -> None:
+        """Show a student the former lab, which has the student's place, in place of the new one.
+
+        Raises:
+            ValueError: it is open elsewhere.
+        """
+        former = self._class.claims.get(code, "")
+        visit, enter = self._places.pop(code, (None, None))
+        self._class.reject(code)
+        if former and visit is not None and enter is not None and not visit.has_ended:
+            enter(former)
+            self._class.leave(code)
 
     def _delete(self, code: str) -> None:
         """Delete a student's lab with all stored data, and the student's seat.

@@ -272,7 +272,7 @@ class LabServer:
         service, teacher = self._classes.at(visit.prefix), visit.teacher
         reopen = partial(self._reopen, visit, entry)
         seat = (
-            service.seat(visit, code, reopen)
+            service.seat(visit, code, reopen, partial(self._enter, visit))
             if service
             else self._classes.seat_elsewhere(visit.prefix, code)
         )

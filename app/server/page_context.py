@@ -21,12 +21,17 @@ class ClassSeat:
             the address of the class if its page is elsewhere, where a nickname is asked for.
         leave: leaves the class but stays in the lab.
         teach: opens the teacher's page, given the key; see `join`.
+        away: the nickname of somebody away who may be the same student, else "", and whether the
+            teacher has been asked for that place.
+        ask_place: asks the teacher for it.
         code: the class code, if the page's address has it; else a student types it.
     """
 
     join: Callable[[str, str], str]
     leave: Callable[[], None]
     teach: Callable[[str], str]
+    away: Callable[[], tuple[str, bool]] = lambda: ("", False)
+    ask_place: Callable[[], None] = lambda: None
     code: str = ""
 
 

@@ -213,6 +213,7 @@ class PageData:
             longest=LONGEST_NAME,
             days=context.keep_days,
             privacy=context.privacy_url,
+            away=("", False) if context.seat is None else context.seat.away(),
         )
 
     def _of_forms(self, snapshot: PageSnapshot, scene: ClientScene | None) -> list[Message]:

@@ -9,6 +9,7 @@ from msgspec import Struct
 
 from onpath.app.channel.sheet_messages import (
     Ask,
+    AskPlace,
     AskSummary,
     ChooseTip,
     CompareLaws,
@@ -85,7 +86,7 @@ class PageRequests:
                 self._press(lambda: choose(robot, tip), self._context.remark, words)
             case CompareLaws(laws=laws, obstruction=obstruction):
                 self._compare(laws, obstruction, snapshot, words, tell)
-            case JoinClass() | LeaveClass() | Teach():
+            case JoinClass() | LeaveClass() | AskPlace() | Teach():
                 self._sit(request, words, tell)
 
     def _sit(self, request: SeatRequest, words: Words, tell: Tell) -> None:
@@ -140,12 +141,14 @@ _NO_SEAT = ClassSeat(join=_no_class, leave=_no_class, teach=_no_class)
 
 def _seat_act(
     request: SeatRequest, seat: ClassSeat
-) -> tuple[Literal["join", "leave", "teach"], Callable[[], str]]:
+) -> tuple[Literal["join", "leave", "ask_place", "teach"], Callable[[], str]]:
     """The name of a request, and what it does; that returns the address to go to, or nothing."""
     match request:
         case JoinClass(code=code, name=name):
             return "join", lambda: seat.join(seat.code or code, name)
         case LeaveClass():
             return "leave", lambda: seat.leave() or ""
+        case AskPlace():
+            return "ask_place", lambda: seat.ask_place() or ""
         case Teach(key=key):
             return "teach", lambda: seat.teach(key)

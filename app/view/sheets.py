@@ -78,7 +78,14 @@ def display_sheet(preferences: Mapping[str, bool]) -> DisplaySheet:
 
 
 def class_message(
-    words: Words, place: str | None, name: str, *, longest: int, days: int, privacy: str
+    words: Words,
+    place: str | None,
+    name: str,
+    *,
+    longest: int,
+    days: int,
+    privacy: str,
+    away: tuple[str, bool] = ("", False),
 ) -> ClassMessage:
     """The lab's place in a class.
 
@@ -90,6 +97,7 @@ def class_message(
         days: number of days without use after which the lab is deleted; 0 if it lasts only as long
             as the server.
         privacy: the address of the site's privacy notice; may be empty.
+        away: see `ClassMessage.away` and `asked`.
     """
     if place is None:
         return ClassMessage(place="none")
@@ -102,4 +110,6 @@ def class_message(
         longest=longest,
         stored=words("class.stored", days=days),
         privacy=privacy,
+        away=away[0],
+        asked=away[1],
     )

@@ -38,7 +38,7 @@ SHELL = (
     *("code.copy", "code.copied"),
     *("class.title", "class.join", "class.leave", "class.code", "class.code_hint"),
     *("class.nickname", "class.nickname_hint", "class.what_stored", "class.privacy"),
-    *("class.then", "class.gone", "class.elsewhere"),
+    *("class.then", "class.gone", "class.elsewhere", "class.ask_place"),
     *("class.teacher", "class.key", "class.key_hint", "class.teach"),
     *("design.files", "design.size", "design.size_hint", "design.radius", "design.radius_hint"),
     *("design.open", "design.open_hint", "design.upload", "design.reading", "design.lines"),
@@ -59,6 +59,8 @@ FILLED = {
     "design.followed": ("file",),
     "design.chosen": ("file",),
     "class.member": ("name",),
+    "class.is_it_you": ("name",),
+    "class.place_asked": ("name",),
     "class.too_long": ("most",),
 }
 """Messages whose values the page fills in."""

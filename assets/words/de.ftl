@@ -359,6 +359,12 @@ class-close_vote = Abstimmung beenden
 class-open_vote = Abstimmung wieder öffnen
 class-vote_is_open = Die Klasse stimmt noch ab. Es geht weiter, wenn deine Lehrkraft die Abstimmung beendet.
 class-other_numbers = andere Zahlen
+class-is_it_you = { $name } ist gerade weg. Bist du das? Dann kann deine Lehrkraft dir deinen Platz zurückgeben, mit allem, was du dort getan hast.
+class-ask_place = Das bin ich: die Lehrkraft fragen
+class-place_asked = Deine Lehrkraft ist gefragt, ob du { $name } bist.
+class-claim = { $name } sagt: Ich bin { $former } und war kurz weg.
+class-give_place = Ja, den Platz zurückgeben
+class-keep_apart = Nein, das ist jemand anderes
 class-set_aside = Alle beiseitelassen, die weg sind ({ $count })
 class-set_aside_told =
     { $count ->

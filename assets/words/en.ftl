@@ -361,6 +361,12 @@ class-close_vote = Close the vote
 class-open_vote = Open the vote again
 class-vote_is_open = The class is still voting. You can go on when your teacher closes the vote.
 class-other_numbers = other numbers
+class-is_it_you = { $name } is away. Is that you? Then your teacher can give you your place back, with everything that you did there.
+class-ask_place = That is me: ask my teacher
+class-place_asked = Your teacher has been asked whether you are { $name }.
+class-claim = { $name } says: I am { $former }, and was away.
+class-give_place = Yes, give the place back
+class-keep_apart = No, that is somebody else
 class-set_aside = Set aside all who are away ({ $count })
 class-set_aside_told =
     { $count ->

@@ -178,6 +178,32 @@ def test_an_answer_that_got_lost_is_sent_by_the_next_page_and_counts_once(tabs: 
     student.page.get_by_role("button", name=re.compile("^Next")).first.wait_for()
 
 
+def test_who_comes_with_another_browser_gets_the_own_place_back_from_the_teacher(
+    tabs: Class, browser: Browser
+) -> None:
+    before, room = tabs.students[0], tabs.room
+    known = before.lab.lessons.progress
+    before.close()
+    wait_for(lambda: not next(iter(room.members().values())).connected)
+    context = browser.new_context(viewport={"width": 800, "height": 560})
+    tab = Tab(before.server, context, draws=False, path=class_address(room.code))
+    card = tab.page.get_by_role("dialog", name="Class")
+    card.get_by_role("textbox", name="Nickname").fill("ada")
+    card.get_by_role("button", name="Join the class").click()
+    card.get_by_text("Ada is away. Is that you?").wait_for()
+    card.get_by_role("button", name="That is me: ask my teacher").click()
+    card.get_by_text("Your teacher has been asked").wait_for()
+    assert set(room.claims.values()) == {next(iter(room.members()))}
+    tabs.open("Class")
+    tabs.press("Yes, give the place back")
+    wait_for(lambda: [each.name for each in room.members().values()] == list(NAMES))
+    wait_for(lambda: next(iter(room.members().values())).connected)
+    assert next(iter(room.members().values())).progress.notes == known.notes
+    tab.page.get_by_role("button", name=re.compile("Ada · ")).first.wait_for()
+    assert tab.errors == []
+    tabs.students[0] = tab
+
+
 PROJECTORS = [(1280, 800), (1366, 768), (1920, 1080)]
 SHARE = 0.55  # of a projector's width that the robots have at least
 STAGE = """() => [...document.querySelectorAll("canvas[data-engine]")]

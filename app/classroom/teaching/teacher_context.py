@@ -53,6 +53,7 @@ class TeacherContext:
         why_still: why the displayed lab is missing or stopped; empty if it runs.
         send_setup: sends the set-up of the teacher's own lab to all students.
         delete: deletes the student of a lab code, with everything that is stored of them.
+        give_place: gives a student, by lab code, the former place that the student claims.
         forget: deletes the labs of all students of the class, and ends it; returns their number.
         stop: returns to the ordinary lab page.
     """
@@ -67,6 +68,7 @@ class TeacherContext:
     why_still: Callable[[Words], str]
     send_setup: Callable[[], None]
     delete: Callable[[str], None]
+    give_place: Callable[[str], None]
     forget: Callable[[], int]
     stop: Callable[[], None]
 

@@ -92,6 +92,7 @@ class TeacherForm:
         fields = [
             _html("code"),
             _html("table"),
+            *self._of_claims(),
             *self._of_absent(),
             _choice("follow", words("class.follow"), {words("class.own_lab"): 0, **followable}),
             _note("still"),
@@ -106,6 +107,18 @@ class TeacherForm:
             _button("stop", words("class.stop_teaching")),
         ]
         return _group("class", words("class.title"), fields)
+
+    def _of_claims(self) -> Iterator[FormField]:
+        """Whether a student who has come back is the one who is away; one after the other."""
+        words, classroom = self._words, self._teaching.classroom
+        for lab, former in list(classroom.claims.items()):
+            new, old = classroom.member(lab), classroom.member(former)
+            if new is None or old is None or old.connected:
+                continue
+            yield _note("claim", words("class.claim", name=new.name, former=old.name))
+            yield _button("give_place", words("class.give_place"), member=new.number)
+            yield _button("keep_apart", words("class.keep_apart"), member=new.number)
+            return
 
     def _of_absent(self) -> Iterator[FormField]:
         """What can be done with all who are away."""

@@ -86,6 +86,8 @@ class TeacherOrders:
             "send_step": lambda _: self._push_step(TakeStep(*self._steps.shown(room.display))),
             "send_route": self._send_route,
             "set_aside": self._set_aside,
+            "give_place": lambda number: teaching.give_place(self._code_of(number)),
+            "keep_apart": lambda number: room.reject(self._code_of(number)),
             "remove": self._remove,
             "delete": self._delete,
             "end_standing": lambda _: room.push(None),

@@ -203,7 +203,7 @@ export interface MakeFile {
 /** An order of a teacher to the class; refused from any other page. */
 export interface Lead {
     is: "lead"
-    do: "ask_again" | "back" | "close_votes" | "delete" | "end" | "end_standing" | "forget" | "freeze" | "keep" | "let_go" | "next" | "open_votes" | "own_lab" | "play" | "put_back" | "record" | "remove" | "send_route" | "send_setup" | "send_step" | "set_aside" | "stop" | "thaw"
+    do: "ask_again" | "back" | "close_votes" | "delete" | "end" | "end_standing" | "forget" | "freeze" | "give_place" | "keep" | "keep_apart" | "let_go" | "next" | "open_votes" | "own_lab" | "play" | "put_back" | "record" | "remove" | "send_route" | "send_setup" | "send_step" | "set_aside" | "stop" | "thaw"
     /** number of the student whom it concerns. */
     member?: number
 }
@@ -271,6 +271,11 @@ export interface JoinClass {
 /** Leave the class; answered by `SeatAnswer`. */
 export interface LeaveClass {
     is: "leave"
+}
+
+/** Ask the teacher for the place of the same name that is away; see `ClassMessage.away`. */
+export interface AskPlace {
+    is: "ask_place"
 }
 
 /** Open the teacher's page with the teacher's key.
@@ -364,6 +369,7 @@ export type PageMessage =
     | CompareLaws
     | JoinClass
     | LeaveClass
+    | AskPlace
     | Teach
 
 /** The code of the page's lab, which its browser keeps before those of its other labs. */
@@ -869,13 +875,17 @@ export interface ClassMessage {
     stored: string
     /** the address of the site's privacy notice; empty if it has none. */
     privacy: string
+    /** the nickname of somebody who is away, and may be the same student; else empty. */
+    away: string
+    /** whether the teacher has been asked to give that place back. */
+    asked: boolean
 }
 
 /** What has come of a `SeatRequest`. */
 export interface SeatAnswer {
     is: "seat"
     /** the request. */
-    of: "join" | "leave" | "teach"
+    of: "ask_place" | "join" | "leave" | "teach"
     /** it was refused: a sentence in the page's language; else empty. */
     why: string
     /** where the page of the class is, if it is another one; else empty. */

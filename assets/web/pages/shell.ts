@@ -45,6 +45,7 @@ export class Shell {
     private compare: LawComparison | null = null
     private seat: ClassSheet | null = null
     private place = "" // the lab's in the class, as it was told last
+    private asked = false // whether the teacher has been asked for a former place
     private readonly chosen = noFile()
     private dropped: File | undefined // for the sheet that is opened next
     private leaves = false // whether it leaves the class by itself
@@ -166,12 +167,13 @@ export class Shell {
 
     /** Show the lab's place in a class. A page at the address of a class begins with its card. */
     private sit(): void {
-        const { engine, header, place, leaves } = this, { seat } = engine
+        const { engine, header, place, leaves, asked } = this, { seat } = engine
         if (!seat) return
         this.place = seat.place
+        this.asked = seat.asked
         header.sit(seat)
         this.seat?.show(seat)
-        if (place && seat.place !== place) {
+        if ((place && seat.place !== place && !seat.away) || (asked && !seat.asked)) {
             this.seat?.close() // what was asked for is done
             if (document.activeElement === document.body) header.seat.focus()
         }

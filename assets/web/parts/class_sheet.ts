@@ -85,12 +85,24 @@ export class ClassSheet {
     private member(seat: ClassMessage): HTMLElement[] {
         const { texts } = this
         keepDraft(DRAFT, null)
+        const former = seat.away ? this.former(seat) : []
         const [before = "", after = ""] = phrase(texts, "class.member").split("{name}")
         const leave = (this.acts = pressed("", phrase(texts, "class.leave"), () => {
             leave.disabled = true
             this.send({ is: "leave" })
         }))
-        return [made("p", "", before, made("b", "", made("bdi", "", seat.name)), after), made("p", "", phrase(texts, "class.then")), this.stored(seat), leave, this.refusal]
+        return [made("p", "", before, made("b", "", made("bdi", "", seat.name)), after), made("p", "", phrase(texts, "class.then")), ...former, this.stored(seat), leave, this.refusal]
+    }
+
+    /** Somebody of the same name is away, whose place one can have back. */
+    private former({ away, asked }: ClassMessage): HTMLElement[] {
+        const { texts } = this
+        const says = made("p", "former", phrase(texts, asked ? "class.place_asked" : "class.is_it_you", { name: away }))
+        const ask = pressed("", phrase(texts, "class.ask_place"), () => {
+            ask.disabled = true
+            this.send({ is: "ask_place" })
+        })
+        return asked ? [says] : [says, ask]
     }
 
     private key(): HTMLElement[] {

@@ -15,6 +15,7 @@ from msgspec import Struct
 from typing_extensions import override
 
 from onpath.app.channel.sheet_messages import (
+    AskPlace,
     ClassMessage,
     JoinClass,
     LeaveClass,
@@ -85,6 +86,7 @@ class World:
         self.service.stop()  # its rounds: `look` is called by hand
         self.members = dict[str, str]()
         self.frozen, self.teachers = False, set[str]()
+        self.enter: Callable[[str], None] = lambda _: None
         self.failures: dict[str, list[float]] = {page.code: [] for page in self.pages}
 
     def _find(self, code: str) -> Any:
@@ -96,7 +98,7 @@ class World:
         """As a page has it that is opened now."""
         if page.visit.teacher is not None:
             return None
-        return self.service.seat(page.visit, page.code, lambda: None)
+        return self.service.seat(page.visit, page.code, lambda: None, self.enter)
 
     def ask(self, page: Page, request: SeatRequest) -> SeatAnswer:
         text: Any = SimpleNamespace(words=ENGLISH, preferences={})
@@ -122,7 +124,9 @@ class World:
         """What the page is told of its place."""
         seat, name = self.seat(page), self.service.nickname(page.code)
         place = None if seat is None else seat.code
-        return class_message(ENGLISH, place, name, longest=LONGEST_NAME, days=7, privacy="")
+        away = ("", False) if seat is None else seat.away()
+        told = {"longest": LONGEST_NAME, "days": 7, "privacy": "", "away": away}
+        return class_message(ENGLISH, place, name, **told)  # pyright: ignore[reportArgumentType]
 
     # What people do
 
@@ -233,6 +237,45 @@ def test_a_lab_is_in_the_class_as_long_as_its_student_and_its_teacher_want(
             else:
                 getattr(made, what)(made.pages[given_[0]], *given_[1:])
             made.check()
+
+
+@pytest.mark.parametrize("is_given", [True, False])
+def test_who_comes_back_under_a_name_that_is_away_gets_the_place_if_the_teacher_says_so(
+    is_given: bool,
+) -> None:
+    with world() as made:
+        old, new, other = made.pages
+        made.join(old, "Ada")
+        made.join(other, "Ben")
+        made.close(old)
+        made.check()
+        entered = list[str]()
+        new.visit.has_ended = False
+        made.enter = entered.append
+        made.join(new, "ADA")
+        assert (made.shown(new).name, made.shown(new).away) == ("ADA 2", "Ada")
+        assert made.shown(other).away == "" and not made.shown(new).asked
+        assert not made.ask(new, AskPlace()).why and made.shown(new).asked
+        assert not made.ask(other, AskPlace()).why  # has no such place, and so asks for nothing
+        assert made.room.claims == {new.code: old.code} and entered == []
+        if is_given:
+            made.service._give_place(new.code)
+            assert entered == [old.code] and set(made.room.members()) == {old.code, other.code}
+        else:
+            made.room.reject(new.code)
+            made.service._give_place(new.code)  # too late
+            assert entered == [] and len(made.room.members()) == 3
+        assert made.room.claims == {}
+
+
+def test_a_place_whose_student_is_here_is_not_offered() -> None:
+    with world() as made:
+        old, new, _ = made.pages
+        made.join(old, "Ada")
+        made.check()
+        made.join(new, "Ada")
+        assert made.shown(new).away == "" and not made.ask(new, AskPlace()).why
+        assert made.room.claims == {}
 
 
 def test_whoever_guesses_keys_waits_even_with_the_right_one_and_nobody_else_does() -> None:

@@ -56,6 +56,7 @@ class Desk:
             why_still=lambda _: "",
             send_setup=lambda: self.calls.append("send_setup"),
             delete=self.room.leave,
+            give_place=lambda code: self.calls.append(f"give_place {code}"),
             forget=self.room.end,
             stop=lambda: self.calls.append("stop"),
         )

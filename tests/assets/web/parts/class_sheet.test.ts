@@ -4,7 +4,7 @@ import { test } from "node:test"
 import type { ClassMessage, PageMessage } from "../../../../assets/web/channel/messages"
 import { ClassSheet } from "../../../../assets/web/parts/class_sheet"
 
-const NONE = { code: "", name: "", longest: 0, stored: "", privacy: "" }
+const NONE = { code: "", name: "", longest: 0, stored: "", privacy: "", away: "", asked: false }
 const GUEST: ClassMessage = { ...NONE, is: "class", place: "guest", code: "ABC234", longest: 5, stored: "all of it", privacy: "https://x.example/p" }
 const MEMBER: ClassMessage = { ...GUEST, place: "member", name: "<img src=x>" }
 const ELSEWHERE: ClassMessage = { ...NONE, is: "class", place: "elsewhere" }
@@ -95,4 +95,16 @@ test("who is no member any more is told so, and may join again", () => {
     const { body, field } = opened(GUEST, false, true)
     assert.equal(body.querySelector("[role=status]")!.textContent, "class.gone")
     assert.ok(field())
+})
+
+test("somebody of the same name who is away is offered once, and asked about", () => {
+    const { body, sent, card } = opened({ ...MEMBER, away: "Ada" })
+    assert.match(body.textContent, /class.is_it_you/)
+    body.querySelectorAll("button").forEach(each => each.textContent === "class.ask_place" && each.click())
+    assert.deepEqual(sent, [{ is: "ask_place" }])
+    card.show({ ...MEMBER, away: "Ada", asked: true })
+    assert.match(body.textContent, /class.place_asked/)
+    assert.ok([...body.querySelectorAll("button")].every(each => each.textContent !== "class.ask_place"))
+    card.show(MEMBER)
+    assert.doesNotMatch(body.textContent, /class.is_it_you|class.place_asked/)
 })
