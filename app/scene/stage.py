@@ -207,15 +207,19 @@ def set_initial_camera(server: viser.ViserServer, stage: Stage) -> None:
 
 
 def build_stage(scene: viser.SceneApi, stage: Stage) -> list[viser.BatchedMeshHandle]:
-    """Add ground, lights and the robots' bases to a client's scene; returns the bases."""
+    """Add ground, lights and the robots' bases to a client's scene; returns the bases.
+
+    A robot without a base is seen from above, so there is no ground beneath it.
+    """
     _add_lights(scene, casts_shadow=not stage.plain)
-    if stage.plain:
+    parts = stage.parts()
+    if parts and stage.plain:
         _add_painted_shadow(scene, stage)
-    else:
+    elif parts:
         _add_ground(scene, stage)
     bases = [
         add_copies(scene, f"/stage/{part}", mesh, stage.origins, colour)
-        for part, mesh, colour in stage.parts()
+        for part, mesh, colour in parts
     ]
     shade(bases, stage)
     return bases

@@ -147,6 +147,8 @@ def _parts(drawing: Drawing, floor: float, tones: Tones, shapes: BodyMeshes | No
     """Fixed parts that support the robot."""
     if shapes is not None:
         return [("base", shapes.base, tones.frame)]
+    if drawing.base == "none":
+        return []
     if drawing.base == "pedestal":
         return [
             ("pedestal", meshes.part("pedestal"), tones.frame),

@@ -994,6 +994,8 @@ machine-flexible-text = Drei Motoren, ein letztes Glied, das sich biegt: Die Spi
 
 machine-cart_pendulum-label = Wagen mit Pendel
 machine-cart_pendulum-text = Zwei Motoren bewegen einen Stift auf einem Wagen, keiner das Pendel, das an ihm hängt oder auf ihm steht.
+machine-hovercraft-label = Luftkissenboot
+machine-hovercraft-text = Zwei Gebläse schieben drei Koordinaten, von oben gesehen: Seitwärts schiebt nichts.
 
 machine-planar_arm-label = Ebener Arm mit drei Gelenken
 machine-planar_arm-text = Drei Motoren, einer mehr, als die Bahn braucht: Neben der Bahn wird eine Haltung gehalten.
@@ -1243,6 +1245,13 @@ parameter-pendulum-label = Pendel
 parameter-pendulum-help = ob das Pendel am Wagen hängt oder auf ihm steht
 parameter-pendulum-option-hanging = hängt
 parameter-pendulum-option-upright = steht
+parameter-pen-label = Stift
+parameter-pen-help = wo auf der Achse des Bootes der Stift sitzt, der auf der Bahn sein soll
+parameter-pen-option-front = vorn
+parameter-pen-option-centre = im Schwerpunkt
+parameter-pen-option-behind = hinten
+parameter-drag-label = Luftwiderstand
+parameter-drag-help = Widerstand der Luft am Schwerpunkt
 
 parameter-mass-label = Masse
 parameter-mass-help = Masse des Pendels
@@ -2036,6 +2045,7 @@ lesson-begun = begonnen
 route-routes = Routen für einen Anlass
 robots-differs_five_bar = zwei Motoren, starre Glieder
 robots-differs_cart_pendulum = ein Pendel ohne Motor
+robots-differs_hovercraft = kein Schub zur Seite
 robots-differs_flexible = sein letztes Glied biegt sich
 robots-differs_planar_arm = ein Motor mehr als nötig
 robots-differs_rod_gantry = ein Stab ohne Motor

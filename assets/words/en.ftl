@@ -1628,6 +1628,7 @@ lesson-begun = begun
 route-routes = Routes for an occasion
 robots-differs_five_bar = two motors, rigid links
 robots-differs_cart_pendulum = a pendulum without a motor
+robots-differs_hovercraft = no push sideways
 robots-differs_flexible = its last link bends
 robots-differs_planar_arm = one motor more than needed
 robots-differs_rod_gantry = a rod without a motor

@@ -104,9 +104,9 @@ class Drawing:
     Attributes:
         strip: number of the last bars that are pieces of one flexible strip; the others are links.
         motors: joints that are drawn as motors besides those at the base pivot.
-        base: support of the robot: two uprights with motors, or a column with a turntable. With
-            "links", the robot stands on the floor, and `app/scene/link_nodes.py` draws the bodies
-            of its chain.
+        base: support of the robot: two uprights with motors, a column with a turntable, or none,
+            of what is seen from above. With "links", the robot stands on the floor, and
+            `app/scene/link_nodes.py` draws the bodies of its chain.
         axes: directions of the outputs in the robot's frame, orthonormal; None: two outputs are
             its x and z, three its x, y and z.
         away: horizontal direction (x, y) across the links, away from the viewer, of unit length.
@@ -126,7 +126,7 @@ class Drawing:
 
     strip: int = 0
     motors: tuple[int, ...] = ()
-    base: Literal["uprights", "pedestal", "links"] = "uprights"
+    base: Literal["uprights", "pedestal", "links", "none"] = "uprights"
     axes: tuple[Point, ...] | None = None
     away: tuple[float, float] = (0.0, 1.0)
     depths: Depths = Depths()

@@ -77,11 +77,10 @@ def jacobian(robot: Robot, parameters: Parameters, q: Array) -> Array:
 
 
 def own_matrix(robot: Robot, parameters: Parameters, q: Array) -> Array:
-    """J M⁻¹ B, with M alone from the model and B = (I, 0)."""
-    mass = np.array(robot.system.function("mass")(q, 0 * q, robot.plant(parameters)))
-    return jacobian(robot, parameters, q) @ np.linalg.solve(
-        mass, np.eye(len(q))[:, : robot.system.m]
-    )
+    """J M⁻¹ B, with M and B from the model."""
+    parts = robot.system.function("mass", "actuation")(q, 0 * q, robot.plant(parameters))
+    mass, actuation = (part.full() for part in parts)
+    return jacobian(robot, parameters, q) @ np.linalg.solve(mass, actuation)
 
 
 @EVERY
