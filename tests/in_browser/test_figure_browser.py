@@ -24,7 +24,8 @@ from onpath.models.control.sides import SIDES
 from onpath.models.paths.path_design import presets
 from tests.support.axe import RUN, SCRIPT, unnamed
 from tests.support.browser import THREE_FRAMES
-from tests.support.figure_runs import Act
+from tests.support.drawings import letters, star
+from tests.support.figure_runs import Act, PythonFigure
 from tests.support.fingers import fingers
 from tests.support.waiting import wait_for
 
@@ -70,6 +71,7 @@ ACT = """([what, value]) => {
     else if (what === "change") simulation.sides[value[0]].change(value[1])
     else simulation[what](value)
 }"""
+LOGGED = "onpath.simulation.sides.map(side => [...side.logged()])"
 DISTANCES = "onpath.simulation.sides.map(side => side.distance)"
 
 
@@ -406,6 +408,43 @@ def test_a_point_of_the_path_is_dragged_as_far_as_it_goes_and_there_it_is_red(
     opened.page.keyboard.press("Escape")
     opened.page.keyboard.press("ArrowRight")
     assert opened.number("onpath.simulation.ticks") > 0 and opened.complaints == []
+    opened.page.close()
+
+
+def test_drawings_are_followed_to_the_last_bit_and_bent(browser: Browser, tmp_path: Path) -> None:
+    """Chromium's sines are those of the C library."""
+    paths = {"letters": letters(), "star": star()}
+    figure = chosen("five_bar", LAWS, paths, NEWCOMER, choices=OTHERS)
+    file, python = tmp_path / "drawings.html", PythonFigure(figure)
+    file.write_text(figure_page(figure, ENGLISH), encoding="utf-8")
+    opened = Opened(browser, file)
+    opened.press("Pause")
+    acts: list[Act] = [
+        ("set", {"speed": 6.0}),
+        ("advance", 900),
+        ("set", {"speed": -9.0, "K1": 90}),
+    ]
+    acts += [("advance", 700), ("change", [1, 2]), ("advance", 900)]
+    for act in (("choose", 0), *acts, ("choose", 1), *acts):
+        opened.do(act)
+        python.act(act)
+        if act[0] == "advance":
+            rows = np.array(opened.number(LOGGED))
+            np.testing.assert_array_equal(rows, np.array(python.rows()))
+    opened.do(("choose", 0))
+    opened.page.evaluate(THREE_FRAMES)
+    lines = [(opacity, way) for _, opacity, _, way in opened.page.evaluate(STROKES)]
+    assert sum(len(way) > 9 and 0 < opacity < 1 for opacity, way in lines) >= 2 * 2  # of each robot
+    before, (x, y) = opened.number(TABLE), spot(opened, 1)
+    mouse = opened.page.mouse
+    mouse.move(x, y)
+    mouse.down()
+    mouse.move(x, y - 400, steps=3)
+    opened.page.evaluate(THREE_FRAMES)
+    assert len(opened.number("onpath.simulation.followed.fault.marks")) > 0
+    mouse.up()
+    wait_for(lambda: opened.number(TABLE) != before, WAIT)
+    assert opened.complaints == []
     opened.page.close()
 
 

@@ -40,6 +40,23 @@ def scrawl(seed: int) -> SplineCurve:
     return spline_through([line], False)
 
 
+def letters() -> SplineCurve:
+    """An A and an L in three strokes, 60 mm wide."""
+    strokes = (
+        [(-0.05, -0.02), (-0.04, 0.02), (-0.03, -0.02)],
+        [(-0.045, -0.005), (-0.035, -0.005)],
+        [(-0.01, 0.02), (-0.01, -0.02), (0.01, -0.02)],
+    )
+    return spline_through([np.array(stroke) for stroke in strokes], False)
+
+
+def star() -> SplineCurve:
+    """A star of five tips, 95 mm wide."""
+    turn = np.pi / 5 * np.arange(10)
+    radius = np.where(np.arange(10) % 2, 0.02, 0.05)
+    return spline_through([radius[:, None] * np.column_stack([np.sin(turn), np.cos(turn)])], True)
+
+
 def through(time: Array, z: Array, pieces: int, closed: bool) -> SplineCurve:
     """The spline of least squares through points at times from 0 to 1."""
     place = np.clip(time * pieces, 0, pieces * (1 - 1e-12))

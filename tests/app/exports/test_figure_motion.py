@@ -20,9 +20,8 @@ from onpath.models.control.law_poles import channels_of
 from onpath.models.errors import Message
 from onpath.models.paths.curve_faults import ambiguities
 from onpath.models.paths.path_design import presets
-from onpath.models.paths.spline_fit import spline_through
 from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
-from tests.support.drawings import scrawl
+from tests.support.drawings import letters, scrawl, star
 from tests.support.figure_runs import Act, PythonFigure
 from tests.support.node_page import NodePage, needs_node
 from tests.support.robot_files import HEAVY, urdf
@@ -30,23 +29,9 @@ from tests.support.waiting import wait_for
 
 pytestmark = [pytest.mark.thorough, needs_node]
 WAIT = 60.0  # [s]
-LETTERS = (
-    [(-0.05, -0.02), (-0.04, 0.02), (-0.03, -0.02)],
-    [(-0.045, -0.005), (-0.035, -0.005)],
-    [(-0.01, 0.02), (-0.01, -0.02), (0.01, -0.02)],
-)
-"""An A and an L, in three strokes, [m]."""
-TIPS = np.pi / 5 * np.arange(10)
-STAR = np.where(np.arange(10) % 2, 0.4, 1.0)[:, None] * np.column_stack(
-    [np.sin(TIPS), np.cos(TIPS)]
-)
 LAWS = ("trajectory_tracking", "path_following")
 PATHS = ("circle", "clover", "segment")
-DRAWINGS = {
-    "letters": spline_through([np.array(each) for each in LETTERS]),
-    "scrawl": scrawl(3),
-    "star": spline_through([0.05 * STAR], closed=True),
-}
+DRAWINGS = {"letters": letters(), "scrawl": scrawl(3), "star": star()}
 OTHERS = ("waiting_clock", "set_point")
 CLOSE = 1e-12
 BENDS = 1e-10
