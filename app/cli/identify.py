@@ -19,15 +19,17 @@ class IdentifyCommand:
 
     file: Annotated[Path, tyro.conf.Positional]
     """CSV file of `onpath experiment --csv`, of the lab's export or of a real arm, with any
-    separators, decimal sign and encoding. If a file of OnPath has columns of measured angles, these
+    separators, decimal sign and encoding; or arrays t, q and tau of a real arm in a .npz, .npy or
+    .mat file. If a file of OnPath has columns of measured angles, these
     are used, and their rates by a filter; otherwise the true ones."""
     robot: str = "five_bar"
     """Name of the robot, or its URDF or MJCF file."""
     law: str = ""
     """Use only the rows of this control law; all by default."""
     column: Repeated = ()
-    """Name of a column of a real arm's log, as q1="Joint 1"; repeat for t, q1, q2, tau1, tau2
-    and, if the log has them, forces at the end-point (force1, force2). Times may be uneven."""
+    """Name of a column of a real arm's log, as q1="Joint 1", or its place from 1 on where columns
+    have no names, as q1=2; repeat for t, q1, q2, tau1, tau2 and, if the log has them, forces at the
+    end-point (force1, force2). Times may be uneven."""
     unit: Repeated = ()
     """Unit of a column, as q1=deg, or its factor to SI units, as tau1=0.085; repeat for more. By
     default s, rad, N m and N."""

@@ -75,14 +75,15 @@ def identify(
     robot: str | Path | RobotEntry = "five_bar",
     file: str | Path = "",
     *,
-    columns: Mapping[str, str] | None = None,
+    columns: Mapping[str, str | int] | None = None,
     units: Mapping[str, str | float] | None = None,
     law: str = "",
 ) -> IdentificationResult:
     """Estimate a robot's parameters from the log of a real arm, or a CSV file of OnPath.
 
-    The file is a table with the names of its columns in the first line. Separators, decimal sign
-    and encoding are recognised. Its times may be uneven, and its torques late by an unknown time.
+    The file is a table, with the names of its columns in the first line or without, whose
+    separators, decimal sign and encoding are recognised; or arrays t, q and tau in a .npz, .npy or
+    .mat file. Its times may be uneven, and its torques late by an unknown time.
 
     Args:
         robot: as for `onpath.simulate`; its geometry has to be that of the arm.
@@ -90,7 +91,8 @@ def identify(
         columns: names of the log's columns: "t", each coordinate, such as "q1", the torque of each
             motor, such as "tau1", and perhaps the force on the end-point, "force1" and so on.
             Those that are not given are named as in files of OnPath: t_s, q1_rad, tau1_Nm,
-            force1_N. A log without forces is of a free motion.
+            force1_N. Where they have no names, their places from 1 on, as {"t": 1, "q1": 2}. A
+            log without forces is of a free motion.
         units: of these columns, such as {"q1": "deg", "t": "ms"}, or factors to SI units, such as
             {"tau1": 0.085} for a current; others are in s, rad or m, N m or N, and N.
         law: use only the rows of this law, if there is a column `law`.

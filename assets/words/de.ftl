@@ -1515,6 +1515,8 @@ error-table_long = eine Tabelle hat höchstens { $most } Zeilen
 error-table_separator = Zeile { $line }: { $text } trennt keine Spalten: das tun Komma, Semikolon oder Tabulator
 error-table_quotes = Zeile { $line }: ein Anführungszeichen fehlt oder steht am falschen Ort
 error-table_no_column = Zeile { $line }: es gibt keine Spalte { $name }
+error-table_no_names = Zeile { $line }: die Spalten haben keine Namen, und { $name } ist keine ihrer Nummern, 1 bis { $last }: Sage, welche welche ist, etwa mit --column t=1 --column q1=2
+error-array_file = die Felder lassen sich nicht lesen: { $reason }
 error-table_column_twice = Zeile { $line }: es gibt mehrere Spalten { $name }
 error-table_cells = Zeile { $line }: erwartet sind { $wanted } Zellen, nicht { $count }
 error-table_empty = Zeile { $line }: nach den Namen der Spalten kommen keine Zeilen

@@ -1098,6 +1098,8 @@ error-table_long = a table has at most { $most } lines
 error-table_separator = line { $line }: { $text } separates no columns: a comma, a semicolon or a tab does
 error-table_quotes = line { $line }: a quotation mark is missing or out of place
 error-table_no_column = line { $line }: there is no column { $name }
+error-table_no_names = line { $line }: the columns have no names, and { $name } is none of their numbers, 1 to { $last }: say which is which, as with --column t=1 --column q1=2
+error-array_file = the arrays cannot be read: { $reason }
 error-table_column_twice = line { $line }: there are several columns { $name }
 error-table_cells = line { $line }: expected { $wanted } cells, got { $count }
 error-table_empty = line { $line }: no rows follow the names of the columns

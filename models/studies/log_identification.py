@@ -41,7 +41,7 @@ def identify_file(
     path: Path,
     entry: RobotEntry,
     law: str = "",
-    columns: Mapping[str, str] | None = None,
+    columns: Mapping[str, str | int] | None = None,
     units: Mapping[str, str | float] | None = None,
 ) -> FileEstimate:
     """Estimate a robot's parameters.

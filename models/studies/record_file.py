@@ -1,13 +1,14 @@
 """Reads records of motion: CSV files of OnPath, and logs of real arms.
 
-The columns of a log have the names and units that its user states. Its rows need not be evenly
+The columns of a log have the names, or places, and units that its user states; those of arrays of
+NumPy or MATLAB are named as in `quantities`, unless the user names them. Rows need not be evenly
 spaced in time; they are then interpolated. The angles are measured, and their rates are filtered.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import groupby
 from math import pi
 from pathlib import Path
@@ -17,6 +18,7 @@ import numpy as np
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.trajectory import header, measured_names
 from onpath.models.errors import CodedError
+from onpath.models.studies.array_file import is_array_file
 from onpath.models.studies.identification import BUMP, FEWEST, smooth_velocities
 from onpath.models.studies.linear_model import MotionRecord
 from onpath.models.studies.table_file import Table, read_table
@@ -24,6 +26,7 @@ from onpath.models.systems.parameter_specs import unknown_name
 from onpath.models.systems.robots import Robot
 
 LAW = "law"  # name of its column
+MISSING = ("error.table_no_column", "error.table_no_names")
 EVEN = 1e-3  # largest relative deviation of the time steps that is taken for rounding
 GAP = 0.05  # [s], longest time without a row
 FAR = 1e6  # largest absolute value of angles, torques and forces (SI)
@@ -66,7 +69,7 @@ class LogColumns:
 
 
 def log_columns(
-    robot: Robot, columns: Mapping[str, str], units: Mapping[str, str | float]
+    robot: Robot, columns: Mapping[str, str | int], units: Mapping[str, str | float]
 ) -> LogColumns:
     """The columns of a log.
 
@@ -83,7 +86,8 @@ def log_columns(
         if name not in known:
             raise unknown_name(name, list(known), "quantity")
     scales = {name: _scale(name, units.get(name, 1.0), known[name]) for name in known}
-    return LogColumns({**known, **columns}, frozenset(columns), scales)
+    named = {name: str(column) for name, column in columns.items()}
+    return LogColumns({**known, **named}, frozenset(columns), scales)
 
 
 def _scale(name: str, unit: str | float, usual: str) -> float:
@@ -114,6 +118,10 @@ def read_records(
             column.
         OSError: it cannot be read.
     """
+    if log is None and is_array_file(path):
+        log = log_columns(robot, {}, {})
+    if log is not None and is_array_file(path):
+        log = replace(log, names={n: c if n in log.named else n for n, c in log.names.items()})
     measured, table = _own(path, robot) if log is None else (True, _log(path, robot, log))
     time = "t_s" if log is None else log.names["t"]
     laws = table.texts.get(LAW)
@@ -134,7 +142,7 @@ def _own(path: Path, robot: Robot) -> tuple[bool, Table]:
         try:
             return measured, read_table(path, _columns(robot, measured), ("side", LAW))
         except CodedError as error:
-            if error.message.code != "error.table_no_column":
+            if error.message.code not in MISSING:
                 raise
             missing = error
     assert missing is not None
@@ -162,7 +170,7 @@ def _log(path: Path, robot: Robot, log: LogColumns) -> Table:
     try:
         table = _quantities(path, log, [*motion, *forces])
     except CodedError as error:
-        if error.message.code != "error.table_no_column" or log.named.intersection(forces):
+        if error.message.code not in MISSING or log.named.intersection(forces):
             raise
         table = _quantities(path, log, motion)
     n, m, rows = robot.system.n, robot.system.m, len(table.lines)

@@ -1,11 +1,13 @@
 """Reads tables of numbers as programs and spreadsheets of any country write them.
 
-A table has a line with the names of its columns and then a line for each row. The conventions in
-which programs differ are recognised from the file:
+A table has a line with the names of its columns, or none, and then a line for each row. A name that
+is a whole number, and that no column has, is a column's place, counted from 1. A first line of
+numbers only is a row, unless it counts the columns, 0, 1, 2 and so on, as pandas does. The
+conventions in which programs differ are recognised from the file:
 
 - encoding: UTF-8 or UTF-16, with a byte order mark or without one
 - separator of the cells: that of a line `sep=;`, else the tab, semicolon or comma in the line with
-  the names
+  the names; blanks in a table without names
 - decimal sign: point or comma, the same in the whole table; digits in groups are refused, because
   `1.000` would be one thousand in one country and one in another
 
@@ -24,6 +26,7 @@ import re
 from array import array
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import chain
 from math import isfinite
 from pathlib import Path
 
@@ -32,6 +35,7 @@ import numpy as np
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.trajectory import without_mark
 from onpath.models.errors import CodedError
+from onpath.models.studies.array_file import array_columns, is_array_file
 from onpath.models.systems.parameter_specs import MINUS
 
 LONGEST_LINE = 10_000  # [characters]
@@ -68,7 +72,8 @@ def read_table(
     """Read some columns of a table; the others may contain anything.
 
     Args:
-        numbers: names of columns of finite numbers, which the table must have.
+        path: a text, or arrays of NumPy or MATLAB, see `array_file.py`.
+        numbers: names or places of columns of finite numbers, which the table must have.
         texts: names of columns of texts, which it may have.
         time: which of the numbers may be as large as `LATEST`.
 
@@ -76,6 +81,8 @@ def read_table(
         CodedError: it is no such table; the message names the line, and the column of a bad number.
         OSError: the file cannot be read.
     """
+    if is_array_file(path):
+        return _of_arrays(array_columns(path), numbers, time)
     with path.open("rb") as raw:
         encoding = encoding_of(raw.peek(1))
         # undecodable bytes are replaced, and refused if they matter
@@ -121,9 +128,12 @@ def _read(
     else:
         unquoted = re.sub('"[^"]*"', "", line)
         separator = next((each for each in SEPARATORS if each in unquoted), ",")
+        separator = " " if _in_blanks(line) else separator
     names = [without_mark(cell) for cell in cells_of(line, separator, number)]
     while names and not names[-1]:
         names.pop()
+    if _is_row(names):
+        names, lines = [str(i) for i in range(1, len(names) + 1)], chain([(number, line)], lines)
     wanted = [_place(name, names, number) for name in numbers]
     most = {i: LATEST if names[i] == time else LARGEST for i in wanted}
     others = {name: names.index(name) for name in texts if name in names}
@@ -143,6 +153,39 @@ def _read(
     return Table(np.array(flat).reshape(len(rows), len(wanted)), found, rows)
 
 
+def _in_blanks(line: str) -> bool:
+    """Whether a line consists of several numbers between blanks."""
+    words = line.split(" ")
+    found = [word for word in words if word]
+    return len(found) > 1 and all(NUMBER.fullmatch(each) and each[-1].isdigit() for each in found)
+
+
+def _is_row(cells: Sequence[str]) -> bool:
+    """Whether the cells of a first line are numbers, which do not count the columns."""
+    counts = [[str(i + first) for i in range(len(cells))] for first in (0, 1)]
+    return (
+        bool(cells)
+        and all(map(NUMBER.fullmatch, cells))
+        and (len(cells) < 3 or cells not in counts)
+    )
+
+
+def _of_arrays(columns: Mapping[str, Array], numbers: Sequence[str], time: str) -> Table:
+    """Some columns of arrays; the lines are their rows, from 1."""
+    names = [*columns]
+    found = [names[_place(name, names, 1)] for name in numbers]
+    for name in found:
+        bad = np.flatnonzero(~(np.abs(columns[name]) <= (LATEST if name == time else LARGEST)))
+        if bad.size:
+            text, line = f"{columns[name][bad[0]]:g}", str(bad[0] + 1)
+            raise CodedError("error.table_large_number", line=line, column=name, text=text)
+    return Table(
+        np.stack([columns[name] for name in found], axis=1),
+        {},
+        range(1, 1 + len(columns[names[0]])),
+    )
+
+
 def cells_of(line: str, separator: str, number: int) -> list[str]:
     """The cells of a line.
 
@@ -152,6 +195,8 @@ def cells_of(line: str, separator: str, number: int) -> list[str]:
     Raises:
         CodedError: a quotation mark is out of place.
     """
+    if separator == " ":
+        return line.split()
     reader = csv.reader([line], delimiter=separator, skipinitialspace=True, strict=True)
     try:
         return [cell.strip() for cell in next(reader, list[str]())]
@@ -160,8 +205,13 @@ def cells_of(line: str, separator: str, number: int) -> list[str]:
 
 
 def _place(name: str, names: Sequence[str], line: int) -> int:
-    """The index of the column with this name."""
+    """The index of the column with this name, or at this place."""
     if names.count(name) != 1:
+        if re.fullmatch("[0-9]{1,4}", name) and 1 <= int(name) <= len(names) and name not in names:
+            return int(name) - 1
+        if names[:1] == ["1"]:
+            last = str(len(names))
+            raise CodedError("error.table_no_names", line=str(line), name=name, last=last)
         if name in names:
             raise CodedError("error.table_column_twice", line=str(line), name=name)
         raise CodedError("error.table_no_column", line=str(line), name=name)

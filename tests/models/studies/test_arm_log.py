@@ -8,9 +8,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.io import savemat
 
 import onpath
 from onpath.app.cli.main import run_command
+from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
 from onpath.models.studies.linear_model import dependent_names, estimate
 from onpath.models.studies.record_file import log_columns, quantities, read_records
@@ -208,6 +210,106 @@ def changed(row: int, column: int, text: str) -> str:
 def without(first: int, last: int) -> str:
     table = lines()
     return "\n".join(map(",".join, table[:first] + table[last:]))
+
+
+PLACES = {name: place for place, name in enumerate(("t", "q1", "q2", "tau1", "tau2"), 1)}
+
+
+def saved(kind: str, folder: Path, t: Array, q: Array, u: Array) -> Path:
+    """A log as other programs save it, without names of columns."""
+    whole, path = np.column_stack([t, q, u]), folder / f"log.{kind}"
+    arrays = {
+        "t": t,
+        "q": q,
+        "tau": u,
+        "note": np.array(["by hand"]),
+        "rate": np.array(500.0),
+        **{f"k{i}": np.array(1.0) for i in range(9)},
+    }
+    if kind == "csv":
+        np.savetxt(path, whole, delimiter=",")
+    elif kind == "txt":
+        np.savetxt(path, whole, header="t q1 q2 tau1 tau2")
+    elif kind == "asc":  # as MATLAB's save -ascii
+        path.write_text("\n".join("".join(f"{x:16.7e}" for x in row) for row in whole))
+    elif kind == "pandas.csv":
+        names = ",".join(map(str, range(5)))
+        np.savetxt(path, whole, delimiter=",", header=names, comments="")
+    elif kind == "npy":
+        np.save(path, whole)
+    elif kind == "npz":
+        np.savez(path, **arrays)
+    else:
+        savemat(path, {**arrays, "q": q.T})  # one matrix lies on its side
+    return path
+
+
+@pytest.mark.parametrize("kind", ["csv", "txt", "asc", "npy", "npz", "mat"])
+def test_a_log_without_names_gives_what_one_with_names_does(kind: str, tmp_path: Path) -> None:
+    motion, _ = motion_of("five_bar")
+    t, q, u = Logger().rows(motion, seed=1)
+    write_log(tmp_path / "named.csv", t, q, u)
+    named = onpath.identify("five_bar", tmp_path / "named.csv", columns=COLUMNS, units=UNITS)
+    given = None if kind in ("npz", "mat") else PLACES
+    found = onpath.identify("five_bar", saved(kind, tmp_path, t, q, u), columns=given)
+    assert found.values == pytest.approx(named.values, rel=1e-3, abs=1e-5)
+
+
+def test_names_that_are_numbers_are_names(tmp_path: Path) -> None:
+    """pandas names columns 0, 1, 2: there, 1 is the second."""
+    motion, _ = motion_of("five_bar")
+    t, q, u = Logger().rows(motion, seed=1)
+    plain = onpath.identify("five_bar", saved("csv", tmp_path, t, q, u), columns=PLACES)
+    counted = {name: place - 1 for name, place in PLACES.items()}
+    found = onpath.identify("five_bar", saved("pandas.csv", tmp_path, t, q, u), columns=counted)
+    assert found.values == plain.values
+
+
+def test_times_in_nanoseconds_since_1970_are_read(tmp_path: Path) -> None:
+    motion, _ = motion_of("five_bar")
+    t, q, u = Logger().rows(motion, seed=1)
+    path, begin = tmp_path / "bag.csv", 1_764_490_000_000_000_000
+    rows = zip(t, q, u, strict=True)
+    path.write_text(
+        "\n".join(
+            ",".join([str(begin + round(1e9 * time)), *(f"{x:.9g}" for x in (*angles, *torques))])
+            for time, angles, torques in rows
+        )
+    )
+    plain = onpath.identify("five_bar", saved("csv", tmp_path, t, q, u), columns=PLACES)
+    found = onpath.identify("five_bar", path, columns=PLACES, units={"t": "ns"})
+    for name, (low, high) in plain.intervals.items():
+        assert abs(found.values[name] - plain.values[name]) < 0.1 * (high - low), name
+
+
+@pytest.mark.parametrize("kind", ["csv", "npy"])
+def test_a_column_that_is_not_there_is_asked_for_by_its_number(kind: str, tmp_path: Path) -> None:
+    path = saved(kind, tmp_path, np.arange(9.0), np.zeros((9, 2)), np.zeros((9, 2)))
+    for columns in ({}, {"t": 1}, PLACES | {"q2": 6}, PLACES | {"q2": 0}):
+        with pytest.raises(CodedError, match=r"--column t=1 --column q1=2"):
+            onpath.identify("five_bar", path, columns=columns, units={"t": "s"})
+
+
+def test_hostile_arrays_are_refused(tmp_path: Path) -> None:
+    pickled, cut = tmp_path / "a.npy", tmp_path / "b.npz"
+    np.save(pickled, np.array([{}], dtype=object), allow_pickle=True)
+    np.savez(cut, t=np.arange(9.0))
+    cut.write_bytes(cut.read_bytes()[:-30])
+    (tmp_path / "c.mat").write_bytes(b"MATLAB 7.3 MAT-file" + bytes(200))
+    np.savez(tmp_path / "d.npz", note=np.array(["nothing"]))
+    bad = np.zeros((900, 5))
+    bad[:, 0], bad[7, 2] = np.arange(900), np.nan
+    np.save(tmp_path / "e.npy", bad)
+    for name, said in (
+        ("a.npy", "Object"),
+        ("b.npz", "zip"),
+        ("c.mat", "cannot be read"),
+        ("d.npz", "no vector"),
+    ):
+        with pytest.raises(CodedError, match=said):
+            onpath.identify("five_bar", tmp_path / name, columns=PLACES)
+    with pytest.raises(CodedError, match="line 8, column 3: nan is out of range"):
+        onpath.identify("five_bar", tmp_path / "e.npy", columns=PLACES)
 
 
 HOSTILE = {
