@@ -28,6 +28,7 @@ from onpath.app.lab.snapshots.snapshot import PathSnapshot
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.loop_vectors import log_layout
 from onpath.models.control.sides import SIDES
+from onpath.models.paths.spline_curves import SplineCurve
 from onpath.models.systems.law_parameters import LEVEL_SET
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
@@ -231,7 +232,8 @@ def path_message(robot: Robot, path: PathSnapshot) -> PathMessage:
     up -= up @ right * right
     return PathMessage(
         points=_whole(LENGTH * robot.output_at(path.points)),
-        closed=path.closed,
+        closed=path.curve.closed,
+        raised=path.curve.raised if isinstance(path.curve, SplineCurve) else (),
         right=right.tolist(),
         up=(up / np.linalg.norm(up)).tolist(),
     )

@@ -61,10 +61,12 @@ class PathMessage(Struct, frozen=True, tag_field="is", tag="path"):
         points: of the output space, at evenly spaced θ from -π to π, in 10 µm. A closed path is
             periodic, an open one goes on along its end tangents.
         closed: whether it is closed.
+        raised: where the pen is up: θ from and to, [rad].
         right, up: two unit vectors at right angles, in which the path is seen from in front.
     """
 
     points: list[list[int]]
     closed: bool
+    raised: tuple[tuple[float, float], ...]
     right: list[float]
     up: list[float]

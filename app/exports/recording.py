@@ -12,7 +12,7 @@ from onpath.app.lab.segments import Segment
 from onpath.app.lab.snapshots.obstacles import wall_then
 from onpath.app.lab.snapshots.robot_geometry import robot_snapshots
 from onpath.app.lab.snapshots.snapshot import PathSnapshot, Snapshot
-from onpath.app.lab.snapshots.take_snapshot import CURVE_POINTS
+from onpath.app.lab.snapshots.take_snapshot import path_points
 from onpath.app.scene.scene import Scene
 from onpath.app.scene.stage import set_initial_camera
 from onpath.app.scene.stage_catalogue import stage_of
@@ -64,10 +64,10 @@ def _snapshot(robot: Robot, segment: Segment, before: list[Segment]) -> Snapshot
     outputs = sample_layout(robot).slices["y"]
     traces = np.array([s.sample[:, outputs] for s in [*before, segment]], dtype=float)
     robots = robot_snapshots(robot, segment.curve, segment.instant(), traces[:-1])
-    theta = np.linspace(-np.pi, np.pi, CURVE_POINTS)
     path = PathSnapshot(
         version=id(segment.curve),
-        points=robot.position(robot.frame.lift(segment.curve.at(theta))),
+        curve=segment.curve,
+        points=robot.position(robot.frame.lift(path_points(segment.curve))),
         control_points=np.zeros((0, 3)),
         selected=None,
         refused=np.zeros((0, 3)),

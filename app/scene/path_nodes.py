@@ -44,13 +44,14 @@ class PathNodes:
         self._bases = bases
         self._connect = connect
         self._curve: viser.LineSegmentsHandle | None = None
+        self._dashes: viser.LineSegmentsHandle | None = None
         self._points: viser.BatchedMeshHandle | None = None
         self._marks: viser.BatchedMeshHandle | None = None
         self._given: viser.LineSegmentsHandle | None = None
 
     def draw(self, path: PathSnapshot) -> None:
         """Update the nodes to show a path."""
-        self._draw_curve(path.points)
+        self._draw_curve(path)
         self._draw_points(path)
         self._draw_marks(path.refused)
         self._draw_given(path.given)
@@ -59,15 +60,22 @@ class PathNodes:
         """Points of a robot's frame at each robot, in the world, shape (k n, 3), [m]."""
         return (self._bases[:, None] + points).reshape(-1, 3)
 
-    def _draw_curve(self, points: np.ndarray) -> None:
-        pieces = np.stack([points[:-1], points[1:]], axis=1).reshape(-1, 3)
-        segments = self._everywhere(pieces).reshape(-1, 2, 3)
+    def _draw_curve(self, path: PathSnapshot) -> None:
+        segments = self._everywhere(path.drawn.reshape(-1, 3)).reshape(-1, 2, 3)
         if self._curve is None:
             self._curve = self._scene.add_line_segments(
                 "/path/curve", segments, self._tones.path.rgb, thickness=CURVE_THICKNESS
             )
         else:
             self._curve.points = segments.astype(np.float32)
+        if self._dashes is not None:
+            self._dashes.remove()
+            self._dashes = None
+        if len(path.dashes):
+            dashes = self._everywhere(path.dashes.reshape(-1, 3)).reshape(-1, 2, 3)
+            self._dashes = self._scene.add_line_segments(
+                "/path/raised", dashes, self._tones.path.rgb, thickness=CURVE_THICKNESS / 2
+            )
 
     def _draw_points(self, path: PathSnapshot) -> None:
         one = np.tile(self._tones.point.linear, (len(path.control_points), 1))

@@ -12,7 +12,6 @@ from onpath.app.common import palette
 from onpath.app.lab.snapshots.snapshot import PathSnapshot
 from onpath.app.scene.meshes import Mesh
 from onpath.app.scene.stage import Stage, add_copies
-from onpath.models.paths.curve_fit import through_samples
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.tube import CurveFrames, curve_frames, offset, tube_width
 from onpath.models.systems.robots import Robot
@@ -86,7 +85,7 @@ def tube_sizes(curve: Curve) -> TubeSizes:
 
 def tube_shape(robot: Robot, path: PathSnapshot) -> TubeShape:
     """The tube around a path as it is drawn."""
-    curve = drawn_curve(robot, path)
+    curve = path.curve
     sizes = tube_sizes(curve)
     shown, across = sizes.shown, sizes.across
     theta = np.linspace(-np.pi, np.pi, ALONG + 1)
@@ -105,16 +104,6 @@ def tube_shape(robot: Robot, path: PathSnapshot) -> TubeShape:
         normals=placed(_spokes(at, shown) if in_space else _edges(at, shown)),
         offsets=placed(_offsets(frames, np.concatenate([-across[::-1], across]))),
     )
-
-
-def drawn_curve(robot: Robot, path: PathSnapshot) -> Curve:
-    """The curve whose evenly spaced samples are drawn, in coordinates of the path's plane."""
-    y = robot.output_at(path.points)
-    z = robot.frame.planar(y)
-    rises = robot.frame.space is not None and float(np.ptp(y[:, 2])) > 1e-9
-    samples = y if rises else z
-    closed = bool(np.linalg.norm(samples[0] - samples[-1]) < 1e-9)
-    return through_samples(samples, closed)
 
 
 def _round_step(step: float) -> float:

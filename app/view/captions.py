@@ -73,7 +73,7 @@ class Captions:
 
 def is_at_end(robot: RobotSnapshot, path: PathSnapshot) -> bool:
     """Whether a robot rests at an end of an open path."""
-    if abs(robot.speed) > STILL or path.closed:
+    if abs(robot.speed) > STILL or path.curve.closed:
         return False
     return bool(np.linalg.norm(path.points[[0, -1]] - robot.end, axis=1).min() < NEAR)
 

@@ -1,4 +1,4 @@
-"""Fits curves to control points and to freehand strokes.
+"""Fits curves to control points.
 
 A cubic spline through the points, or the polyline through many of them, is resampled at equal arc
 length. A closed curve is then the Fourier series of the samples, truncated after `HARMONICS`; an
@@ -154,57 +154,6 @@ def smooth_through(points: Array, closed: bool) -> Array:
     at = np.interp(np.arange(each * (len(line) - 1) + 1) / each, np.arange(len(line)), spline.x)
     smooth = np.asarray(spline(at), dtype=np.float64)
     return smooth[:-1] if closed else smooth
-
-
-def through_samples(samples: Array, closed: bool) -> SeriesCurve:
-    """The curve with given points at evenly spaced θ from -π to π.
-
-    A curve of this project is recovered from its own samples up to rounding.
-
-    Args:
-        samples: shape (n, d), [m], with n - 1 > 2 HARMONICS; the last point of a closed curve is
-            its first.
-        closed: whether the curve is closed.
-    """
-    if closed:
-        return _fourier_of(samples[:-1])
-    at = np.linspace(-1.0, 1.0, len(samples))
-    return chebyshev_curve(np.asarray(chebyshev.chebfit(at, samples, HARMONICS), dtype=float))
-
-
-def from_stroke(points: Array, closed: bool, passes: int = 40) -> SeriesCurve:
-    """A curve from a freehand stroke: resampled at 96 points, smoothed, then fitted.
-
-    With S the smoothing operator, the fitted points are S z + S (z - S z): smoothing the residual
-    and adding it back ("twicing") undoes most of the shrinkage that S alone causes.
-
-    Args:
-        points: the stroke as it was drawn, shape (n, 2), [m].
-        closed: whether to join the ends.
-        passes: number of smoothing passes.
-
-    Raises:
-        ValueError: points that are not finite, fewer than three distinct points, or a total length
-            below `SHORTEST`.
-    """
-    points = distinct(points, least=3)
-    if closed:
-        points = np.vstack([points, points[:1]])
-    s = _arc_length(points)
-    even = _even(0, s[-1], 96, endpoint=not closed)
-    line = np.column_stack([np.interp(even, s, points[:, 0]), np.interp(even, s, points[:, 1])])
-    smooth = _smoothed(line, closed, passes)
-    smooth = smooth + _smoothed(line - smooth, closed, passes)
-    return closed_through(smooth) if closed else open_through(smooth)
-
-
-def _smoothed(line: Array, closed: bool, passes: int) -> Array:
-    """Repeats z_i <- (z_(i-1) + 2 z_i + z_(i+1)) / 4; the ends of an open line stay fixed."""
-    for _ in range(passes):
-        padded = np.vstack([line[-1:], line, line[:1]] if closed else [line[:1], line, line[-1:]])
-        between = (padded[:-2] + 2 * line + padded[2:]) / 4
-        line = between if closed else np.vstack([line[:1], between[1:-1], line[-1:]])
-    return line
 
 
 def control_points(curve: Curve, count: int) -> Array:

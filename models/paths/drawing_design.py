@@ -20,16 +20,15 @@ from typing_extensions import override
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
 from onpath.models.paths.curve_blend import aligned
-from onpath.models.paths.curve_fit import control_points
+from onpath.models.paths.curve_fit import control_points, distinct
 from onpath.models.paths.curves import PERIOD, Curve, SeriesCurve, circle, segment
 from onpath.models.paths.path_design import MOST_POINTS, REACH, PathDesign
 from onpath.models.paths.spline_curves import DEGREE, WINDOW, SplineCurve, grained, piece_basis
-from onpath.models.paths.spline_fit import spline_through
+from onpath.models.paths.spline_fit import compared, spline_through, steadied
 
 APART = 0.04  # [m], usual distance of handles along a drawing
 FEWEST = 6  # handles of a short drawing
 NARROWEST = 3  # pieces between a handle and the end of its bump
-TREMBLE = 1e-3  # [m], smoothing of a line drawn by hand
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -130,7 +129,9 @@ def drawn(stroke: Array) -> PathDesign:
     stroke = np.clip(stroke, -REACH, REACH)
     length = float(np.linalg.norm(np.diff(stroke, axis=0), axis=1).sum())
     closed = float(np.linalg.norm(stroke[0] - stroke[-1])) < 0.25 * length
-    return from_curve(spline_through([stroke], closed, TREMBLE))
+    line = distinct(stroke, least=3 if closed else 2)
+    curve = spline_through([steadied(line, closed)], closed)
+    return from_curve(compared(curve, [np.vstack([line, line[:1]]) if closed else line]))
 
 
 def from_curve(curve: Curve) -> PathDesign:

@@ -46,6 +46,7 @@ CLOSE = 0.0025  # deviation at which pieces suffice, as a share of the drawing's
 FIRST_PIECES = 24
 DENSITY = 12  # points on each piece
 STIFFNESS = 1e-7  # w, for each point of a piece
+TREMOR = 1.5e-3  # [m], width of the smoothing of a line drawn by hand
 DECIMALS = 4  # of the duration, [s], and of the ends of links, [rad]
 LINK_RADIUS = 2e-3  # [m], least one of a link's arcs
 
@@ -65,9 +66,7 @@ class Line:
     closed: bool
 
 
-def spline_through(
-    strokes: Sequence[Array], closed: bool = False, tremble: float = 0.0
-) -> SplineCurve:
+def spline_through(strokes: Sequence[Array], closed: bool = False) -> SplineCurve:
     """The path along strokes in their order; between them the pen is raised.
 
     It is rounded as little as is needed for bends of `LEAST_RADIUS`. Its control points are
@@ -76,7 +75,6 @@ def spline_through(
     Args:
         strokes: each of shape (n, 2), [m].
         closed: whether a single stroke is joined to its beginning.
-        tremble: width of the smoothing that a line drawn by hand needs at least, [m].
 
     Raises:
         ValueError: points of a wrong shape or not finite, fewer than two of a stroke that are
@@ -88,8 +86,7 @@ def spline_through(
     sharpest, best = np.inf, None
     for width, factor in ROUNDINGS:
         cap = factor * float(np.clip(0.008 * size, *CAP))
-        smooth = max(width, tremble)
-        line = _joined([_rounded(each, closed, smooth, cap) for each in lines], closed, size)
+        line = _joined([_rounded(each, closed, width, cap) for each in lines], closed, size)
         found = _fitted(line, CLOSE * size)
         bend = _sharpest(found)
         if bend < sharpest:
@@ -120,18 +117,34 @@ def _cleaned(strokes: Sequence[Array], closed: bool) -> list[Array]:
 
 def _rounded(points: Array, closed: bool, width: float, cap: float) -> Array:
     """A stroke at even steps, smoothed by a Gaussian of some width, with caps of a radius, [m]."""
-    from scipy.ndimage import gaussian_filter1d  # slow to import; see app/server/warm_up.py
-
     even, step = _even(points)
     even = _capped(even, step, closed, cap)
     even, step = _even(even)
+    return _smoothed(even, closed, width / step)
+
+
+def steadied(points: Array, closed: bool) -> Array:
+    """A line drawn by hand without the hand's tremor, at even steps, shape (n, 2) -> (k, 2), [m].
+
+    Args:
+        points: more than one.
+        closed: whether it is closed; it then ends with its first point.
+    """
+    even, step = _even(np.vstack([points, points[:1]]) if closed else points)
+    return _smoothed(even, closed, TREMOR / step)
+
+
+def _smoothed(even: Array, closed: bool, width: float) -> Array:
+    """A line, smoothed by a Gaussian of a width in steps; an open one keeps its ends."""
+    from scipy.ndimage import gaussian_filter1d  # slow to import; see app/server/warm_up.py
+
     if closed:
-        smooth = gaussian_filter1d(even[:-1], width / step, axis=0, mode="wrap")
+        smooth = gaussian_filter1d(even[:-1], width, axis=0, mode="wrap")
         return np.vstack([smooth, smooth[:1]])
-    pad = min(len(even) - 1, int(4 * width / step) + 1)
+    pad = min(len(even) - 1, int(4 * width) + 1)
     before = 2 * even[:1] - even[pad:0:-1]
     after = 2 * even[-1:] - even[-2 : -pad - 2 : -1]
-    smooth = gaussian_filter1d(np.vstack([before, even, after]), width / step, axis=0)
+    smooth = gaussian_filter1d(np.vstack([before, even, after]), width, axis=0)
     return smooth[pad:-pad]
 
 

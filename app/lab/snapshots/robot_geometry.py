@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from functools import lru_cache
-from typing import NamedTuple
+from math import floor, isfinite, pi
+from typing import Any, NamedTuple
 
 import casadi as ca
 import numpy as np
@@ -25,8 +26,9 @@ from onpath.models.closed_loop.buffered import Buffered
 from onpath.models.closed_loop.loop_vectors import log_layout
 from onpath.models.control.laws.registry import law_named
 from onpath.models.control.sides import SIDES
-from onpath.models.paths.curves import ORDERS, TERMS, Curve
+from onpath.models.paths.curves import ORDERS, PERIOD, TERMS, Curve
 from onpath.models.paths.projection import LocalCurve, basis
+from onpath.models.paths.spline_curves import WINDOW, SplineCurve, piece_basis
 from onpath.models.systems.rigid_chain import frame_poses
 from onpath.models.systems.robots import Robot
 
@@ -79,7 +81,7 @@ def drawn_robots(
     robot: Robot, curve: Curve, instant: Instant, exaggeration: float = 1.0
 ) -> tuple[Array, Counts]:
     """`Motion.drawn` of both robots at one instant, and their numbers of parts."""
-    geometry = _geometry_of(robot.core, curve.closed, curve.dimension)
+    geometry = _geometry_of(robot.core, type(curve), curve.closed, curve.dimension)
     return geometry(robot, instant, curve, exaggeration), geometry.counts
 
 
@@ -91,8 +93,8 @@ def drawn_now(
     Args:
         table: `Curve.table()` of the path.
     """
-    geometry = _geometry_of(robot.core, curve.closed, curve.dimension)
-    return geometry.of_runs(robot, runs, table, exaggeration), geometry.counts
+    geometry = _geometry_of(robot.core, type(curve), curve.closed, curve.dimension)
+    return geometry.of_runs(robot, runs, curve, table, exaggeration), geometry.counts
 
 
 class RobotGeometry:
@@ -102,8 +104,9 @@ class RobotGeometry:
         counts: numbers of parts.
     """
 
-    def __init__(self, robot: Robot, closed: bool, dimension: int) -> None:
-        function, self.counts = geometry_function(robot, closed, dimension)
+    def __init__(self, robot: Robot, made: type[Curve], closed: bool, dimension: int) -> None:
+        spline = issubclass(made, SplineCurve)
+        function, self.counts = geometry_function(robot, closed, dimension, spline)
         self._draw = Buffered(function)
         self._joints, self._core, self._dimension = robot.system.n, robot, dimension
 
@@ -111,10 +114,15 @@ class RobotGeometry:
         """`Motion.drawn` of an instant."""
         q = [state[: self._joints] for state in instant.states]
         seen = instant.sample.take(_seen(self._core, instant.laws))
-        return self._drawn(robot, q, [seen], curve.table(), exaggeration)
+        return self._drawn(robot, q, [seen], curve, curve.table(), exaggeration)
 
     def of_runs(
-        self, robot: Robot, runs: Iterable[ClosedLoopRun], table: Array, exaggeration: float
+        self,
+        robot: Robot,
+        runs: Iterable[ClosedLoopRun],
+        curve: Curve,
+        table: Array,
+        exaggeration: float,
     ) -> Array:
         """`Motion.drawn` of the present states of two runs; see `drawn_now`."""
         q, seen = list[Array](), list[Array]()
@@ -123,24 +131,42 @@ class RobotGeometry:
             record = states.records[i]
             q.append(record[: self._joints])
             seen.append(record[states.size :].take(_logged(self._core, run.law)))
-        return self._drawn(robot, q, seen, table, exaggeration)
+        return self._drawn(robot, q, seen, curve, table, exaggeration)
 
     def _drawn(
         self,
         robot: Robot,
         q: Sequence[Array],
         seen: Sequence[Array],
+        curve: Curve,
         table: Array,
         exaggeration: float,
     ) -> Array:
-        inputs = np.concatenate(q), np.concatenate(seen), table, exaggeration
+        values = np.concatenate(seen)
+        if isinstance(curve, SplineCurve):
+            table = pieces_at(curve, values.reshape(len(SIDES), -1)[:, -1].tolist())
+        inputs = np.concatenate(q), values, table, exaggeration
         drawn = self._draw(*inputs, path_place(robot, self._dimension))[0]
         return drawn.reshape(len(SIDES), -1).copy()
 
 
+def pieces_at(curve: SplineCurve, aims: Sequence[float]) -> Array:
+    """For each aim, [rad]: its place in its piece, how many pieces it is beyond an end, and the
+    piece's control points, flat."""
+    found = list[Any]()
+    for aim in aims:
+        theta = aim if isfinite(aim) else 0.0
+        inner = theta - PERIOD * floor(theta / PERIOD + 0.5) if curve.closed else theta
+        whole = (inner + pi) * curve.pieces / PERIOD
+        place = min(max(whole, 0.0), float(curve.pieces))
+        piece = min(int(place), curve.pieces - 1)
+        found += [[place - piece, whole - place], curve.points[piece : piece + WINDOW].ravel()]
+    return np.concatenate(found)
+
+
 @per_thread
-def _geometry_of(robot: Robot, closed: bool, dimension: int) -> RobotGeometry:
-    return RobotGeometry(robot, closed, dimension)
+def _geometry_of(robot: Robot, made: type[Curve], closed: bool, dimension: int) -> RobotGeometry:
+    return RobotGeometry(robot, made, closed, dimension)
 
 
 @lru_cache(maxsize=256)
@@ -180,26 +206,36 @@ class _Points(NamedTuple):
 
 
 @lru_cache(maxsize=64)
-def geometry_function(robot: Robot, closed: bool, dimension: int = 2) -> tuple[ca.Function, Counts]:
+def geometry_function(
+    robot: Robot, closed: bool, dimension: int = 2, spline: bool = False
+) -> tuple[ca.Function, Counts]:
     """Make the function from the state to points and poses of both robots.
 
     Args:
         closed, dimension: of the path.
+        spline: whether it consists of pieces.
 
     Returns:
-        (q, (n, 2); y, force and aim, (2 p + 1, 2); table of the curve; exaggeration; `path_place`)
-        -> one column per robot: `RobotSnapshot.points`, then `RobotSnapshot.poses`.
+        (q, (n, 2); y, force and aim, (2 p + 1, 2); table of the curve, or `pieces_at` of the aims;
+        exaggeration; `path_place`) -> one column per robot: `RobotSnapshot.points`, then
+        `RobotSnapshot.poses`.
     """
     p, both = robot.system.p, len(SIDES)
     q, seen = ca.SX.sym("q", robot.system.n, both), ca.SX.sym("seen", 2 * p + 1, both)
-    table = ca.SX.sym("table", dimension * ORDERS, TERMS)
+    shape = (2 + dimension * WINDOW, both) if spline else (dimension * ORDERS, TERMS)
+    table = ca.SX.sym("table", *shape)
+    tables = ca.horzsplit(table) if spline else [table] * both
     exaggeration = ca.SX.sym("exaggeration")
     placed, path = _affine(robot.position, p), ca.SX.sym("path", 3, dimension + 1)
 
-    def drawn(q: ca.SX, seen: ca.SX) -> _Points:
+    def drawn(q: ca.SX, seen: ca.SX, table: ca.SX) -> _Points:
         y, force, aim = seen[:p], seen[p : 2 * p], seen[2 * p]
         bars, joints = robot.skeleton(q, exaggeration)
-        sigma = LocalCurve.from_values(aim, closed, table @ basis(aim, closed)).sigma
+        if spline:
+            value, slope, *_ = (ca.vertcat(*row) for row in piece_basis(table[0], 1.0))
+            sigma = ca.reshape(table[2:], dimension, WINDOW) @ (value + table[1] * slope)
+        else:
+            sigma = LocalCurve.from_values(aim, closed, table @ basis(aim, closed)).sigma
         pull = placed(force) - placed(ca.SX(p, 1))
         straight = robot.skeleton(q, ca.SX(0))[0][:, -1]
         marks = straight if ca.depends_on(bars, exaggeration) else ca.SX(3, 0)  # of a bent link
@@ -213,7 +249,7 @@ def geometry_function(robot: Robot, closed: bool, dimension: int = 2) -> tuple[c
             force=pull,
         )
 
-    robots = list(map(drawn, ca.horzsplit(q), ca.horzsplit(seen)))
+    robots = list(map(drawn, ca.horzsplit(q), ca.horzsplit(seen), tables))
     first = robots[0]
     counts = Counts(
         bars=first.bars.shape[1] // 2,

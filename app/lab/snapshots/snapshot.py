@@ -8,6 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from onpath.models.paths.curves import PERIOD, Curve
+from onpath.models.paths.spline_curves import SplineCurve
+
 MARKER, TIP, END, FORCE = -4, -3, -2, -1  # indices of these in a robot's points
 
 
@@ -169,7 +172,9 @@ class PathSnapshot:
 
     Attributes:
         version: changes whenever anything here does; bytes while the past is viewed.
-        points: samples of the curve, shape (n, 3); a closed curve repeats its first point.
+        curve: the path itself.
+        points: at evenly spaced θ from -π to π, shape (n, 3); a closed curve repeats its first one.
+        dashes: of the links where the pen is raised, shape (k, 2, 3).
         control_points: shape (k, 3); empty when the curve has none.
         selected: index of the selected control point, or None.
         refused: positions of the errors of the last refused edit, shape (n, 3); usually empty.
@@ -177,16 +182,22 @@ class PathSnapshot:
     """
 
     version: int | bytes
+    curve: Curve
     points: np.ndarray
     control_points: np.ndarray
     selected: int | None
     refused: np.ndarray
     given: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
+    dashes: np.ndarray = field(default_factory=lambda: np.zeros((0, 2, 3)))
 
     @property
-    def closed(self) -> bool:
-        """Whether the path is closed: its ends differ by rounding at most."""
-        return bool(np.allclose(self.points[0], self.points[-1], rtol=0.0, atol=1e-9))
+    def drawn(self) -> np.ndarray:
+        """The straight lines between `points` where the pen is down, shape (k, 2, 3)."""
+        lines = np.stack([self.points[:-1], self.points[1:]], axis=1)
+        if not isinstance(self.curve, SplineCurve):
+            return lines
+        middle = (np.arange(len(lines)) + 0.5) * (PERIOD / len(lines)) - np.pi
+        return lines[self.curve.draws(middle)]
 
 
 @dataclass(frozen=True, slots=True)

@@ -37,12 +37,15 @@ from onpath.models.control.sides import RIGHT
 from onpath.models.paths.curve_fit import FAR
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.path_design import PathDesign
+from onpath.models.paths.spline_curves import SplineCurve
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
 
 TRACE = 1.6  # [s] of the past that a trace shows
 TRACE_POINTS = 120
-CURVE_POINTS = 160
+CURVE_POINTS = 160  # of a series
+OF_PIECE = 2  # of a piece of a drawing
+DASH = 0.002  # [m], of a raised link, and from one dash to the next
 DESIGN_POINTS = 32
 
 
@@ -241,12 +244,34 @@ def _path_snapshot(
         points = np.column_stack([points, editor.blend.target.at(theta)[:, 2]])
     return PathSnapshot(
         version=version,
-        points=placed(curve.at(np.linspace(-np.pi, np.pi, CURVE_POINTS))),
+        curve=curve,
+        points=placed(path_points(curve)),
+        dashes=placed(_dashes(curve)),
         control_points=placed(points),
         selected=editor.selected if is_present else None,
         refused=placed(np.concatenate(refused) if refused else np.zeros((0, 2))),
         given=placed(_given(editor) if is_present else np.zeros((0, 2))),
     )
+
+
+def path_points(curve: Curve) -> Array:
+    """The points with which a path is drawn, at evenly spaced θ from -π to π, shape (n, d), [m]."""
+    count = CURVE_POINTS
+    if isinstance(curve, SplineCurve):
+        count = max(count, OF_PIECE * curve.pieces + 1)
+    return curve.at(np.linspace(-np.pi, np.pi, count))
+
+
+def _dashes(curve: Curve) -> Array:
+    """The dashes of raised links, shape (k, 2, d), [m]."""
+    ends = [np.zeros((0, 2))]
+    if isinstance(curve, SplineCurve):
+        for begin, end in curve.raised:
+            along = curve.at(np.linspace(begin, end, 2 * curve.pieces))
+            length = float(np.linalg.norm(np.diff(along, axis=0), axis=1).sum())
+            count = 2 * max(1, round(length / DASH / 2)) + 1
+            ends.append(np.linspace(begin, end, count + 1)[1:-1].reshape(-1, 2))
+    return curve.at(np.concatenate(ends))
 
 
 def _given(editor: PathEditor) -> np.ndarray:

@@ -36,17 +36,29 @@ type Answer = RobotSheet | LawSheet | CompareSheet | KeepSheet | LessonSheet | H
 /** A path through points at evenly spaced θ from -π to π. */
 class SampledPath implements PathShape {
     readonly lines: readonly (readonly Vector[])[]
+    readonly strokes: readonly (readonly Vector[])[]
+    readonly links: readonly (readonly Vector[])[]
     readonly closed: boolean
     readonly right: Vector
     readonly up: Vector
     private readonly points: readonly Vector[]
 
-    constructor({ points, closed, right, up }: Omit<PathMessage, "is">) {
+    constructor({ points, closed, raised, right, up }: Omit<PathMessage, "is">) {
         this.points = points.map(point => point.map(each => each / LENGTH))
         this.lines = [this.points]
         this.closed = closed
+        const ends = [-Math.PI, ...raised.flat(), Math.PI]
+        const parts = ends.slice(1).map((end, i) => this.between(ends[i]!, end))
+        this.strokes = parts.filter((_, i) => i % 2 === 0)
+        this.links = parts.filter((_, i) => i % 2 === 1)
         this.right = right
         this.up = up
+    }
+
+    private between(begin: number, end: number): readonly Vector[] {
+        const count = this.points.length - 1, place = (theta: number) => ((theta + Math.PI) / (2 * Math.PI)) * count
+        const inside = this.points.slice(Math.floor(place(begin)) + 1, Math.ceil(place(end)))
+        return [this.at(begin), ...inside, this.at(end)]
     }
 
     /** The point at θ: a cubic through the four next points; an open path goes on along its end tangents. */
@@ -122,7 +134,7 @@ class RowSide implements SideSample {
 export class RemoteEngine implements Engine {
     /** What the lab is called and set to; null until it is known. */
     lab: StateMessage | null = null
-    route = new SampledPath({ points: [[0, 0], [0, 0]], closed: false, right: [1, 0], up: [0, 1] })
+    route = new SampledPath({ points: [[0, 0], [0, 0]], closed: false, raised: [], right: [1, 0], up: [0, 1] })
     /** Whether the page hears from its lab. */
     connected = false
     /** The number by which viser's websocket is known to be this page's. */

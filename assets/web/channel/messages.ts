@@ -437,6 +437,8 @@ export interface PathMessage {
     points: number[][]
     /** whether it is closed. */
     closed: boolean
+    /** where the pen is up: θ from and to, [rad]. */
+    raised: [number, number][]
     /** two unit vectors at right angles, in which the path is seen from in front. */
     right: number[]
     /** two unit vectors at right angles, in which the path is seen from in front. */

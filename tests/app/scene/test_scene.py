@@ -34,6 +34,7 @@ from onpath.app.scene.stage import FIELD_OF_VIEW, Pose, Stage, view_of
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.models.control.sides import DEFAULT_LAWS, LEFT, RIGHT, SIDES
 from onpath.models.paths.curves import TABLE_SHAPE, circle
+from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.drawing import BACK_LAYER, FRONT_LAYER
 from onpath.models.systems.five_bar_robot import RIGID_FIVE_BAR
@@ -70,7 +71,8 @@ def path(version: int = 0, n_points: int = 6) -> PathSnapshot:
     """A circle with control points on it."""
     turn = np.linspace(0.0, 2.0 * np.pi, 101)[:, None]
     circle = np.array([0.2, 0.0, 0.2]) + 0.05 * np.hstack([np.cos(turn), 0 * turn, np.sin(turn)])
-    return PathSnapshot(version, circle, circle[:n_points], None, np.zeros((0, 3)))
+    curve = presets()["circle"].curve
+    return PathSnapshot(version, curve, circle, circle[:n_points], None, np.zeros((0, 3)))
 
 
 def snapshot(q1: float = 1.5, q2: float = 3.0, **changes: Any) -> Snapshot:

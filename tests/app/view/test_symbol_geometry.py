@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from onpath.app.lab.snapshots.snapshot import Counts, Motion, PageKey, PathSnapshot
 from onpath.app.view.symbol_geometry import AT_JOINTS, has_meaning, symbol_lines
 from onpath.models.arrays import Array
+from onpath.models.paths.path_design import presets
 from onpath.models.robot_files.file_chain import Options
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.rigid_chain import frame_poses
@@ -31,7 +32,14 @@ def meant(symbol: str, robot: Robot, q: Array) -> tuple[Array, Array]:
     tip = robot.position(robot.endpoint(q))
     counts = Counts(bars=len(ends) // 2, joints=len(joints), marks=0)
     points = np.concatenate([ends, joints, [tip, tip, tip, tip]])
-    path = PathSnapshot(0, np.zeros((2, 3)), np.zeros((0, 3)), None, np.zeros((0, 3)))
+    path = PathSnapshot(
+        version=0,
+        curve=presets()["circle"].curve,
+        points=np.zeros((2, 3)),
+        control_points=np.zeros((0, 3)),
+        selected=None,
+        refused=np.zeros((0, 3)),
+    )
     motion = Motion(PageKey(), path, counts, points.reshape(1, -1))
     (line,) = symbol_lines(symbol, robot, motion)
     return robot.position(line), ends

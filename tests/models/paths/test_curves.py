@@ -18,7 +18,6 @@ from onpath.models.paths.curve_fit import (
     control_points,
     deviation_remark,
     fitted,
-    from_stroke,
     open_through,
 )
 from onpath.models.paths.curves import (
@@ -151,20 +150,6 @@ def test_open_fit_starts_and_ends_where_its_points_do() -> None:
     assert curve.at(np.array([-np.pi, np.pi])) == pytest.approx(points[[0, -1]], abs=5e-4)
     straight = open_through(points[[0, -1]])
     assert np.abs(straight.curvature(THETA)).max() < 1e-9
-
-
-@pytest.mark.parametrize("closed", [True, False])
-def test_stroke_loses_its_tremor_and_keeps_its_shape(closed: bool) -> None:
-    rng = np.random.default_rng(0)
-    angle = np.linspace(-np.pi, np.pi if closed else 1.0, 300)
-    drawn = 0.06 * np.column_stack([np.cos(angle), np.sin(angle)])
-    curve = from_stroke(drawn + 3e-4 * rng.normal(size=drawn.shape), closed)
-    assert curve.closed == closed
-    inside = curve.sample() if closed else curve.sample()[40:-40]
-    radius = np.linalg.norm(curve.at(inside), axis=1)
-    assert radius.std() < 2e-4
-    assert radius == pytest.approx(0.06, rel=0.05)
-    assert curve.curvature(inside) == pytest.approx(1 / 0.06, rel=0.6)
 
 
 def test_control_points_give_the_curve_back() -> None:

@@ -12,7 +12,7 @@ from scipy.interpolate import CubicSpline
 
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curves import PERIOD
-from onpath.models.paths.drawing_design import TREMBLE, DrawingDesign, drawn, from_curve
+from onpath.models.paths.drawing_design import DrawingDesign, drawn, from_curve
 from onpath.models.paths.nearest_path import nearest_path
 from onpath.models.paths.path_design import MOST_POINTS, REACH
 from onpath.models.paths.spline_curves import GRAIN, SplineCurve
@@ -115,9 +115,25 @@ def test_a_stroke_is_followed_as_it_was_drawn(seed: int, closed: bool) -> None:
     design = drawn(meant + rng.normal(scale=3e-4, size=meant.shape))
     curve = design.curve
     assert design.name == "drawn" and curve.closed == closed
-    assert np.sqrt((curve.nearest(meant)[1] ** 2).mean()) < TREMBLE / 2
+    assert np.sqrt((curve.nearest(meant)[1] ** 2).mean()) < 5e-4
     theta = curve.nearest(meant[[100, 120]])[0]
     assert theta[0] < theta[1]  # in the direction of the hand
+
+
+@pytest.mark.parametrize("closed", [True, False])
+def test_stroke_loses_its_tremor_and_keeps_its_shape(closed: bool) -> None:
+    rng = np.random.default_rng(0)
+    angle = np.linspace(-np.pi, np.pi if closed else 1.0, 300)
+    line = 0.06 * np.column_stack([np.cos(angle), np.sin(angle)])
+    curve = drawn(line + 3e-4 * rng.normal(size=line.shape)).curve
+    assert curve.closed == closed
+    inside = curve.sample() if closed else curve.sample()[40:-40]
+    radius = np.linalg.norm(curve.at(inside), axis=1)
+    assert radius.std() < 2e-4
+    assert radius == pytest.approx(0.06, rel=0.05)
+    steady = drawn(line).curve
+    assert isinstance(curve, SplineCurve) and isinstance(steady, SplineCurve)
+    assert curve.duration < 1.1 * steady.duration  # as quickly: the tremor has left no bends
 
 
 BAD_STROKES = [

@@ -15,7 +15,7 @@ function heard(): { engine: RemoteEngine; say: (message: unknown) => void } {
 const row = (ms: number, flags = 0) => [10 * ms, flags, ...[100, 0, 0, 1000, 2000, 0, 0], ...[200, 0, 0, 3000, 4000, 50, 0]]
 const WORDS = { is: "words", language: "en", words: { a: "b" } }
 const FRAME = { is: "frame", rows: [row(0), row(16)], running: true, past: null, anew: true, fields: [] }
-const PATH = { is: "path", points: [[0, 0], [1000, 0], [1000, 1000], [0, 0]], closed: true, right: [1, 0], up: [0, 1] }
+const PATH = { is: "path", points: [[0, 0], [1000, 0], [1000, 1000], [0, 0]], closed: true, raised: [], right: [1, 0], up: [0, 1] }
 const STATE = {
     is: "state", language: "en", robot: "five_bar", titles: ["a", "b"], names: ["a", "b"], texts: ["", ""], captions: ["", ""], clocks: [true, false],
     stopped: [false, false], rate: 1, achieved: 1, together: true, undo: false, message: "", level: "", messages: 0, presenting: false, height: 1,
