@@ -23,6 +23,7 @@ from onpath.models.arrays import Array
 from onpath.models.closed_loop.trajectory import Trajectory
 from onpath.models.control.sides import LEFT, RIGHT
 from onpath.models.paths.curves import Curve
+from onpath.models.paths.spline_curves import SplineCurve
 from onpath.models.systems.robots import Robot
 
 SIZE, DPI = (7.6, 5.2), 100
@@ -77,8 +78,11 @@ def _draw_scene(
     def seen(points: Array) -> Array:
         return 1e3 * robot.seen @ robot.position(points).T
 
-    path = robot.frame.lift(curve.at(np.linspace(-np.pi, np.pi, 361)))
-    axes.plot(*seen(path), color=palette.GREY.hex, linewidth=1.2)
+    theta = np.linspace(-np.pi, np.pi, 2 * curve.grid + 1)
+    path = seen(robot.frame.lift(curve.at(theta)))
+    drawn = curve.draws(theta) if isinstance(curve, SplineCurve) else np.full(theta.shape, True)
+    for shown, style in ((drawn, {}), (~drawn, {"linestyle": ":", "alpha": 0.6})):
+        axes.plot(*np.where(shown, path, np.nan), color=palette.GREY.hex, linewidth=1.2, **style)
     axes.plot(*seen(run.fields["y"][max(0, row - TRACE) : row + 1]), color=colour, linewidth=1.8)
     lines, pins = (1e3 * robot.seen @ np.array(part) for part in picture(run.fields["q"][row]))
     for begin, end in zip(lines.T[::2], lines.T[1::2], strict=True):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import html
 import re
+from dataclasses import replace
 from html import unescape
 from pathlib import Path
 from typing import Any
@@ -16,8 +17,9 @@ from hypothesis import strategies as st
 
 import onpath
 from onpath.app.cli.main import run_command
-from onpath.app.exports.standalone.figure_choice import chosen
+from onpath.app.exports.standalone.figure_choice import CONTROLS, chosen
 from onpath.app.exports.standalone.figure_data import figure_data
+from onpath.app.exports.standalone.figure_module import figure_module
 from onpath.app.exports.standalone.figure_page import figure_page
 from onpath.assets import asset_path
 from onpath.lessons.words import ENGLISH, Words
@@ -29,7 +31,7 @@ from onpath.models.paths.path_design import presets
 from onpath.models.standalone.curve_scans import curve_scans
 from onpath.models.systems.catalogue import ROBOTS
 from tests.support.cases import drawn, some
-from tests.support.drawings import random_drawing
+from tests.support.drawings import random_drawing, scrawl
 from tests.support.page_scans import steps_along
 
 CURVES = {name: presets()[name].curve for name in ("circle", "clover", "segment")}
@@ -108,6 +110,15 @@ def test_a_page_is_small_the_same_every_time_and_names_no_other_place(tmp_path: 
     assert "default-src 'none'" in html.unescape(page)
     around = page.replace(asset_path("web/figure.js").read_text("utf-8"), "")
     assert not re.findall(r"(?:src|href|url)\s*[=(]|https?:|import\(", around)
+
+
+@settings(max_examples=3)
+@given(st.integers(0, 2**32), st.integers(20, 200))
+def test_all_drawings_have_the_same_module(seed: int, pieces: int) -> None:
+    figure = chosen("five_bar", paths={"one": scrawl(3)})
+    other = replace(figure, paths={"other": random_drawing(seed, pieces, 0.02)})
+    assert figure.controls == CONTROLS
+    assert figure_module(other) == figure_module(figure)
 
 
 LARGEST_PAGE = "flexible"
