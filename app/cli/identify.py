@@ -33,6 +33,9 @@ class IdentifyCommand:
     unit: Repeated = ()
     """Unit of a column, as q1=deg, or its factor to SI units, as tau1=0.085; repeat for more. By
     default s, rad, N m and N."""
+    validate: Repeated = ()
+    """Another file of the same form: print how much of its torque the values do not explain;
+    repeat for more."""
     plot: Path | None = None
     """Draw the torques and their residuals to this .png, .svg or .pdf file."""
     json: bool = False
@@ -56,7 +59,8 @@ class IdentifyCommand:
         entry, file = self.file_options.entry_of(self.robot), user_file(self.file)
         columns = assignments(self.column, "--column")
         units = assignments(self.unit, "--unit")
-        found = identify_file(file, entry, self.law, columns, units)
+        others = [user_file(Path(each)) for each in self.validate]
+        found = identify_file(file, entry, self.law, columns, units, others)
         if self.plot:
             with whole_file(self.plot) as path:
                 save(residual_figure(found), path)

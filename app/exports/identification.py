@@ -26,6 +26,7 @@ def identification_data(found: FileEstimate) -> dict[str, Any]:
         "parameters": [_entry(each) for each in result.found],
         "not_excited": list(result.unexcited),
         "unexplained": float(f"{result.unexplained:.3g}"),
+        "unexplained_in": {name: float(f"{x:.3g}") for name, x in found.others.items()},
         "torque_late_s": None if late is None else float(f"{late.value:.3g}"),
         "torque_late_interval_s": None if late is None else _interval(late),
         "motion": None
@@ -89,6 +90,10 @@ def remarks(found: FileEstimate) -> list[str]:
     if found.motion:
         lines.append(_advice(found))
     lines.append(f"{100 * result.unexplained:.2g} % of the torque is not explained")
+    lines += [
+        f"{100 * share:.2g} % of the torque in {name} is not explained by these values"
+        for name, share in found.others.items()
+    ]
     lines.append(
         "The true value is within ± with a probability of 95 %, judging by what is not"
         " explained. That leaves out errors that all rows share: wrong geometry, wrong scales of"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -47,6 +47,11 @@ class IdentificationResult:
         late = self.found.estimate.delay
         return None if late is None else late.value
 
+    @property
+    def unexplained(self) -> dict[str, float]:
+        """Share of the torque in each file of `validate` that the values do not explain."""
+        return dict(self.found.others)
+
     def plot(self, file: str | Path | None = None) -> Figure:
         """Draw the torques and their residuals.
 
@@ -78,6 +83,7 @@ def identify(
     columns: Mapping[str, str | int] | None = None,
     units: Mapping[str, str | float] | None = None,
     law: str = "",
+    validate: str | Path | Sequence[str | Path] = (),
 ) -> IdentificationResult:
     """Estimate a robot's parameters from the log of a real arm, or a CSV file of OnPath.
 
@@ -96,6 +102,8 @@ def identify(
         units: of these columns, such as {"q1": "deg", "t": "ms"}, or factors to SI units, such as
             {"tau1": 0.085} for a current; others are in s, rad or m, N m or N, and N.
         law: use only the rows of this law, if there is a column `law`.
+        validate: another file of the same form, or several: the result says how much of their
+            torque the values do not explain.
 
     Raises:
         ValueError: the file, a name or a unit is refused; the message names line and column. Or
@@ -114,4 +122,6 @@ def identify(
     if not file or isinstance(file, RobotEntry) or str(file) in ROBOTS:
         raise TypeError('identify(robot, file): as in onpath.identify("five_bar", "arm.csv")')
     entry, path = entry_named(robot), user_file(file)
-    return IdentificationResult(identify_file(path, entry, law, columns, units))
+    several = [validate] if isinstance(validate, str | Path) else validate
+    others = [user_file(each) for each in several]
+    return IdentificationResult(identify_file(path, entry, law, columns, units, others))

@@ -62,11 +62,11 @@ def _arrays(path: Path) -> Mapping[str, Any]:
             found = loadmat(path)
             return {name: np.asarray(each) for name, each in found.items() if name[:2] != "__"}
         loaded: Any = np.load(path, allow_pickle=False)
-        if isinstance(loaded, np.ndarray):
-            names = loaded.dtype.names
-            return {"": loaded} if names is None else {name: loaded[name] for name in names}
-        with loaded:
-            return {name: loaded[name] for name in loaded.files}
+        if hasattr(loaded, "files"):
+            with loaded:
+                return {name: loaded[name] for name in loaded.files}
+        names = loaded.dtype.names
+        return {"": loaded} if names is None else {name: loaded[name] for name in names}
     except OSError:
         raise
     except Exception as error:  # of hostile files, whatever it is

@@ -186,6 +186,30 @@ def estimate(system: MechanicalSystem, records: list[MotionRecord], geometry: Ar
     return smooth if smooth.unexplained <= max(ENOUGH * dry.unexplained, EXACT) else dry
 
 
+def unexplained_of(
+    system: MechanicalSystem, found: Estimate, records: list[MotionRecord], geometry: Array
+) -> float:
+    """The share of the torque in other records that an estimate does not explain, rms.
+
+    Parameters that it leaves out count as 0, also where these records depend on them. The torques
+    are as late as in its own records.
+
+    Args:
+        geometry: as for `estimate`.
+
+    Raises:
+        ValueError: as `estimate`.
+    """
+    model = linear_model(system)
+    parts = [_equations(system, model, record, geometry) for record in records]
+    names = (*model.names, *(f"c{i + 1}" for i in range(system.m)))
+    known = {each.name: each.value for each in found.found}
+    values = np.array([known.get(name, 0.0) for name in names])
+    columns, torque = _together(parts, 0.0 if found.delay is None else found.delay.value)
+    total, left = (np.sqrt(np.mean(each**2)) for each in (torque, torque - columns @ values))
+    return float(left / total) if total else 0.0
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class _Equations:
     """The equations that a record gives, one for each coordinate and window.

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from onpath.models.errors import CodedError
 from onpath.models.studies.exciting_motion import ExcitingMotion, exciting_motion
-from onpath.models.studies.linear_model import Estimate, estimate, linear_model
-from onpath.models.studies.record_file import log_columns, read_records
+from onpath.models.studies.linear_model import (
+    Estimate,
+    MotionRecord,
+    estimate,
+    linear_model,
+    unexplained_of,
+)
+from onpath.models.studies.record_file import LogColumns, log_columns, read_records
 from onpath.models.systems.parameter_specs import unknown_name
-from onpath.models.systems.robots import RobotEntry
+from onpath.models.systems.robots import Robot, RobotEntry
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -26,6 +32,7 @@ class FileEstimate:
         measured: whether the angles are sensor readings.
         estimate: of the parameters and the delay.
         motion: a motion that would identify what the file does not, or None.
+        others: share of the torque that the estimate does not explain in other files, by name.
     """
 
     robot: str
@@ -35,6 +42,7 @@ class FileEstimate:
     measured: bool
     estimate: Estimate
     motion: ExcitingMotion | None
+    others: Mapping[str, float]
 
 
 def identify_file(
@@ -43,6 +51,7 @@ def identify_file(
     law: str = "",
     columns: Mapping[str, str | int] | None = None,
     units: Mapping[str, str | float] | None = None,
+    others: Sequence[Path] = (),
 ) -> FileEstimate:
     """Estimate a robot's parameters.
 
@@ -50,6 +59,7 @@ def identify_file(
         entry: the robot; of its parameters, only those on which h and B depend are used.
         law: use only the rows of this law; "": all.
         columns, units: see `log_columns`; without either it is a file of OnPath.
+        others: files of the same form, whose torques the estimate is to explain, too.
 
     Raises:
         ValueError: the robot is not suitable, the file is refused, or its motion is too short.
@@ -57,19 +67,8 @@ def identify_file(
     """
     robot = entry.make(entry.parameters())
     linear_model(robot.system)  # refuse an unsuitable robot before reading
-    is_log = bool(columns or units)
-    log = log_columns(robot, columns or {}, units or {}) if is_log else None
-    try:
-        records = read_records(path, robot, log)
-    except CodedError as error:
-        raise CodedError("error.in_file", file=str(path), reason=error.message) from None
-    known = list(dict.fromkeys(name for name, _ in records))
-    if law and known == [""]:
-        raise CodedError("error.record_without_laws", law=law, file=str(path))
-    laws = [name for name in known if law in ("", name)]
-    if not laws:
-        raise unknown_name(law, known, "law")
-    used = [each for name, each in records if name in laws]
+    log = log_columns(robot, columns or {}, units or {}) if columns or units else None
+    laws, used = _records(path, robot, log, law)
     plant = robot.plant(entry.parameters())
     result = estimate(robot.system, used, plant)
     sums = (name for each in result.found for name, _ in each.others)
@@ -82,4 +81,31 @@ def identify_file(
         measured=all(each.measured for each in used),
         estimate=result,
         motion=exciting_motion(robot.system, used, plant, names),
+        others={
+            str(each): unexplained_of(
+                robot.system, result, _records(each, robot, log, law)[1], plant
+            )
+            for each in others
+        },
     )
+
+
+def _records(
+    path: Path, robot: Robot, log: LogColumns | None, law: str
+) -> tuple[list[str], list[MotionRecord]]:
+    """The laws of a file whose rows are used, and their records.
+
+    Raises:
+        ValueError, OSError: see `identify_file`.
+    """
+    try:
+        records = read_records(path, robot, log)
+    except CodedError as error:
+        raise CodedError("error.in_file", file=str(path), reason=error.message) from None
+    known = list(dict.fromkeys(name for name, _ in records))
+    if law and known == [""]:
+        raise CodedError("error.record_without_laws", law=law, file=str(path))
+    laws = [name for name in known if law in ("", name)]
+    if not laws:
+        raise unknown_name(law, known, "law")
+    return laws, [each for name, each in records if name in laws]

@@ -312,6 +312,24 @@ def test_hostile_arrays_are_refused(tmp_path: Path) -> None:
         onpath.identify("five_bar", tmp_path / "e.npy", columns=PLACES)
 
 
+def test_a_second_log_judges_the_values(tmp_path: Path) -> None:
+    """Of the same arm, it is explained as well as the first; of another arm, it is not."""
+    shares = list[float]()
+    for place, (robot, preset) in enumerate((("five_bar", "circle"), ("two_link_arm", "clover"))):
+        (folder := tmp_path / str(place)).mkdir()
+        motions = motion_of("five_bar")[0], motion_of(robot, preset)[0]
+        files = [
+            saved("csv", folder, *Logger().rows(each, seed)).rename(folder / f"{seed}.csv")
+            for seed, each in enumerate(motions)
+        ]
+        first, second = files
+        found = onpath.identify("five_bar", first, columns=PLACES, validate=second)
+        assert f"in {second} is not explained by these values" in repr(found)
+        own = found.found.estimate.unexplained
+        shares.append(found.unexplained[str(second)] / own)
+    assert shares[0] < 2 and shares[1] > 5, shares
+
+
 HOSTILE = {
     "an infinite angle": (changed(40, 1, "1e999"), "line 41, column q1"),
     "a huge angle": (changed(40, 2, "1e8"), "line 41, column q2"),
