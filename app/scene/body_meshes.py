@@ -184,7 +184,7 @@ def _rod(end: Array, radius: float) -> Any:
     from trimesh.geometry import align_vectors
 
     length = float(np.linalg.norm(end))
-    rod: Any = capsule(height=length, radius=radius, count=[ROUND, 6])
+    rod: Any = capsule(height=length, radius=radius, count=[6, ROUND])
     rod.apply_translation([0, 0, length / 2])
     rod.apply_transform(np.asarray(align_vectors([0, 0, 1], end / length)))
     return rod

@@ -32,7 +32,13 @@ from onpath.models.robot_files.file_chain import (
     tip_at,
     turn,
 )
-from onpath.models.robot_files.file_masses import DENSITY, LinkMass, mass_factor, mass_guess
+from onpath.models.robot_files.file_masses import (
+    DENSITY,
+    LinkMass,
+    is_dummy,
+    mass_factor,
+    mass_guess,
+)
 from onpath.models.robot_files.guesses import Guess
 from onpath.models.robot_files.mjcf_check import all_elements, checked_model
 from onpath.models.robot_files.mujoco_process import read_model
@@ -103,11 +109,12 @@ class _Model:
             frames.append((number, here))
         weighed = self._weighed([body for body, (number, _) in enumerate(frames) if number])
         links = list[list[LinkMass]]([[] for _ in groups])
+        geoms = [int(body) for body in model.geom_bodyid]
         for body, (number, here) in enumerate(frames):
-            links[number].append(self._link_mass(body, here, weighed.get(body, 1.0)))
-        for geom in range(len(model.geom_type)):
-            number, here = frames[int(model.geom_bodyid[geom])]
-            groups[number].shapes += self._shapes(geom, here)
+            own = [i for i, each in enumerate(geoms) if each == body]
+            drawn = [shape for i in own for shape in self._shapes(i, here)]
+            groups[number].shapes += drawn
+            links[number].append(self._link_mass(body, here, drawn, weighed.get(body, 1.0)))
         number, here = frames[tip]
         if number == 0:
             raise FileFault(self._root, Message("robot_file.still_tip"))
@@ -133,16 +140,22 @@ class _Model:
             number, here = frames[body]
             yield name, tip_at(number, (here @ place).translation)
 
-    def _link_mass(self, body: int, here: RigidTransform, factor: float) -> LinkMass:
-        """The mass of a body times a factor, in the frame of its group."""
+    def _link_mass(
+        self, body: int, here: RigidTransform, drawn: Sequence[Shape], factor: float
+    ) -> LinkMass:
+        """The mass of a body times a factor, and what is drawn of it, in the frame of its group."""
         model = self._model
+        name, mass = model.body_names[body], factor * float(model.body_mass[body])
         inertial = here @ _place(model.body_ipos[body], model.body_iquat[body])
         inertia = inertial.rotation @ np.diag(model.body_inertia[body]) @ inertial.rotation.T
+        if is_dummy(mass, inertia):
+            return LinkMass(name, drawn=drawn)
         return LinkMass(
-            name=model.body_names[body],
-            mass=factor * float(model.body_mass[body]),
+            name=name,
+            mass=mass,
             centre=inertial.translation,
             inertia=factor * inertia,
+            drawn=drawn,
         )
 
     def _weighed(self, moving: Sequence[int]) -> dict[int, float]:

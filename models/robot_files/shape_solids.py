@@ -38,7 +38,7 @@ def solid_of(shape: Shape) -> Any:
         solid = trimesh.creation.icosphere(subdivisions=2)
         solid.apply_scale(shape.size)
     elif shape.kind == "capsule":
-        solid = trimesh.creation.capsule(radius=x, height=z, count=[ROUND, 6])
+        solid = trimesh.creation.capsule(radius=x, height=z, count=[6, ROUND])
     else:
         solid = trimesh.creation.cylinder(radius=x, height=z, sections=ROUND)
     if not 0 < len(solid.faces) <= MOST_TRIANGLES:

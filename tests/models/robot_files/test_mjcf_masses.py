@@ -104,6 +104,16 @@ def test_what_is_weighed_is_said_and_its_line_settles_it(tmp_path: Path, bodies:
     assert all(guess.line == "" for guess in read(tmp_path, arm(bodies), density=1000.0).guesses)
 
 
+def test_the_mass_of_a_dummy_is_that_of_what_is_drawn(tmp_path: Path) -> None:
+    """MuJoCo takes 1e-15 kg, with which no arm can be simulated."""
+    dummy = arm(["a mass", "an inertial"]).replace('mass="0.4"', 'mass="1e-15"')
+    robot = read(tmp_path, dummy)
+    assert [str(guess.message).endswith("link1") for guess in robot.guesses[:1]] == [True]
+    length, radius = float(np.hypot(0.03, 0.16)), 0.03
+    volume = np.pi * radius**2 * (length + 4 / 3 * radius)
+    assert 0.9 * volume < bodies_of(robot)[1].mass / 1000 < volume  # a polyhedron in the capsule
+
+
 def test_another_mesh_is_another_robot(tmp_path: Path) -> None:
     """The same file, whose mesh is another one of the same size."""
     mesh = '<geom type="mesh" mesh="link"/>'
