@@ -17,6 +17,7 @@ from onpath.models.arrays import Array
 from onpath.models.closed_loop.faults import not_finite
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loops import Loop
+from onpath.models.control.laws.registry import law_named
 from onpath.models.errors import Message
 from onpath.models.layout import Layout
 from onpath.models.paths.curves import Curve
@@ -173,12 +174,15 @@ def _faults(
 def _distances(
     robot: Robot, kind: Kind, curves: Sequence[Curve], rows: Array, log: Layout
 ) -> Array:
-    """Distances of the end-points from their paths in some rows and the last, (runs, rows), [m]."""
+    """Distances of the end-points from their paths in some rows and the last, (runs, rows), [m].
+
+    On a drawing, a robot that a clock has moved off the path may meet it again at another stroke
+    than the one on which θ was left behind: its distance is from where its reference is.
+    """
     system, slices = robot.system, log.slices
     exact = system.controlled_output is system.output and not kind.encoder
-    if exact and not kind.level_set and system.p == 2:
+    aim = law_named(kind.law).aim if kind.spline else "theta"
+    if exact and not kind.level_set and system.p == 2 and aim == "theta":
         return np.abs(rows[..., slices["xi"].start])
     some = rows[:, (rows.shape[1] - 1) % DISTANCE_INTERVAL :: DISTANCE_INTERVAL]
-    return near_distances(
-        robot.frame, curves, some[..., slices["y"]], some[..., slices["theta"].start]
-    )
+    return near_distances(robot.frame, curves, some[..., slices["y"]], some[..., slices[aim].start])

@@ -347,7 +347,7 @@ class Lab:
             if robot.system.modes:
                 messages = doubts(robot, laws, simulation.parameters, path)
             else:
-                q = robot.rest(robot.frame.lift(path.at(np.array(0.0))))
+                q = robot.rest(robot.frame.lift(path.at(np.array(path.begin))))
                 messages = forecasts(robot, laws, simulation.parameters, q, path)
             self._forecast = inputs, next(iter(messages), None)
         return self._forecast[1]

@@ -320,6 +320,11 @@ class Simulation:
         self._restart(laws)
         self.note("reset")
 
+    def restart(self) -> None:
+        """`reset`, with a new lab's start if the present one is not possible on the path."""
+        self._restart()
+        self.note("reset")
+
     def _restart(self, laws: Mapping[str, str] | None = None) -> None:
         laws, curve = self.laws if laws is None else laws, self.editor.curve
         laws = self.law_changes.begin(laws, self.robot, self.parameters)

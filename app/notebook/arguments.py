@@ -75,7 +75,7 @@ def start_point(robot: Robot, curve: Curve, start: ArrayLike | None) -> Array:
         ValueError: it has another form.
     """
     if start is None:
-        return robot.frame.lift(curve.at(np.array(0.0)))
+        return robot.frame.lift(curve.at(np.array(curve.begin)))
     p = robot.system.p
     form = f"a point, shape (2,) or ({p},), [m]" if p > 2 else "a point, shape (2,), [m]"
     y = array_of("start", start, form)

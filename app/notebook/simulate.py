@@ -84,7 +84,8 @@ def simulate(
             `onpath.Now`; or one of these in a file, as "my_law.py:Name".
         duration: simulated time, [s].
         start: initial position of the end-point, shape (2,) in the path's plane or (p,)
-            in the output space, [m]; None: the point of the path at theta = 0.
+            in the output space, [m]; None: the point of the path at theta = 0, or the
+            beginning of a drawing.
         velocity: initial velocity of the end-point (along, across) the path at its closest point,
             [m/s].
         clock_offset: how far the reference point of a law with a clock is initially ahead of the

@@ -60,7 +60,7 @@ class Start:
 
 
 ON_PATH = Start()
-"""On the path at θ = 0, at rest."""
+"""On the path where runs begin, which is at θ = 0 unless it is a drawing, at rest."""
 
 
 def left_of(curve: Curve, theta: float) -> Array:
@@ -154,12 +154,18 @@ def start_state(
     Raises:
         ValueError: the start is out of reach.
     """
+    start = _begun(start, curve)
     q, v = _motion(robot, curve, parameters, start)
     state = first_state(robot, layouts, curve, q, v)
     if (theta := _on_strand(robot, curve, start, q)) is not None:
         fields = layouts.state.unpack(state)
         fields["theta"][:] = fields["theta_ref"][:] = theta
     return lead(state, layouts, curve, start.clock_offset)
+
+
+def _begun(start: Start, curve: Curve) -> Start:
+    """A start, with the place where runs on a path begin for `ON_PATH`."""
+    return replace(start, theta=curve.begin) if start == ON_PATH else start
 
 
 def check_start(robot: Robot, curve: Curve, parameters: Parameters, start: Start) -> None:

@@ -58,10 +58,10 @@ class Curve(ABC):
         return f"<{kind} path, {1e3 * self.length():.0f} mm long, {extent} mm>"
 
     def _repr_svg_(self) -> str:
-        """A drawing for notebooks: the plan view, the given points dashed, and a dot at θ = 0."""
+        """A drawing for notebooks: plan view, given points dashed, and a dot where runs begin."""
         z = 1e3 * self._drawn()[:, :2] * (1, -1)
         (left, top), (width, height) = z.min(0) - 5, np.ptp(z, axis=0) + 10
-        x, y = 1e3 * self.at(np.array(0.0))[:2] * (1, -1)
+        x, y = 1e3 * self.at(np.array(self.begin))[:2] * (1, -1)
         lines = "" if self.given is None else _polyline(1e3 * self.given * (1, -1), "2")
         return (
             f'<svg xmlns="http://www.w3.org/2000/svg" width="{2 * width:.0f}"'
@@ -119,6 +119,11 @@ class Curve(ABC):
     @abstractmethod
     def plan(self) -> Curve:
         """The plan view z(θ) of a space curve; a planar curve itself."""
+
+    @property
+    def begin(self) -> float:
+        """θ at which runs begin, [rad]."""
+        return 0.0
 
     @property
     def grid(self) -> int:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from onpath.models.arrays import Array
-from onpath.models.paths.curves import Curve, SeriesCurve, local_minima, nearest
+from onpath.models.paths.curves import PERIOD, Curve, SeriesCurve, local_minima, nearest
 from onpath.models.paths.frames import Frame, Plane
 from onpath.models.paths.spline_curves import SplineCurve
 
@@ -17,6 +17,7 @@ CHUNK = 1024  # points per array operation, which stay in the processor's cache
 MOST = 4  # local minima of a distance that are refined
 STILL = 1e-7  # [rad]; Newton's next step from a smaller one is lost in rounding
 NEAR = 0.1  # [rad], largest correction of a guess for which its Taylor polynomial is trusted
+NEAR_PIECES = 1.5  # the same on a drawing
 
 
 def path_distance(frame: Frame, curve: Curve, y: Array, samples: int | None = None) -> Array:
@@ -139,8 +140,8 @@ def closest_parameters(frame: Frame, curve: Curve, y: Array) -> Array:
 def near_distance(frame: Frame, curve: Curve, y: Array, theta: Array) -> Array:
     """`path_distance` from guesses of the closest points: faster, for live display.
 
-    Where Newton's method moves a guess by more than `NEAR`, or makes it worse, the search is
-    global.
+    Where Newton's method moves a guess by more than `NEAR`, or by more than `NEAR_PIECES` of a
+    drawing, or makes it worse, the search is global.
 
     Args:
         y: points, shape (n, p), [m].
@@ -169,10 +170,13 @@ def near_distances(frame: Frame, curves: Sequence[Curve], y: Array, theta: Array
         return np.stack([near_distance(frame, *given) for given in each])
     better, distances = _refined(frame, every, y, theta)
     guessed = np.sqrt(((frame.lift(every.at(theta)) - y) ** 2).sum(-1))
-    astray = ~((np.abs(better - theta) < NEAR) & (distances <= guessed + 1e-12))
+    first = curves[0]
+    is_drawing = isinstance(first, SplineCurve)
+    near = NEAR_PIECES * PERIOD / first.pieces if is_drawing else NEAR
+    astray = ~((np.abs(better - theta) < near) & (distances <= guessed + 1e-12))
     for i in np.flatnonzero(astray.any(axis=1)).tolist():
-        failed = astray[i]
-        distances[i, failed] = path_distance(frame, curves[i], y[i, failed], curves[i].grid // 4)
+        failed, samples = astray[i], None if is_drawing else curves[i].grid // 4
+        distances[i, failed] = path_distance(frame, curves[i], y[i, failed], samples)
     return distances
 
 

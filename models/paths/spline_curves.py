@@ -72,6 +72,12 @@ class SplineCurve(Curve):
 
     @property
     @override
+    def begin(self) -> float:
+        """Where the drawing begins."""
+        return -np.pi
+
+    @property
+    @override
     def grid(self) -> int:
         return max(GRID, PER_PIECE * self.pieces)
 

@@ -123,7 +123,7 @@ class Experiment:
     def along(self, path: Curve, name: str = "") -> Experiment:
         """The experiment on another path, with the name that the user gives it.
 
-        The end-point starts at the same point, or at θ = 0 if it started on the former path.
+        The end-point starts at the same point, or where the path begins if it was on the former one.
 
         Raises:
             ValueError: the robot cannot follow the path; the message says why.
@@ -133,7 +133,7 @@ class Experiment:
         first = robot.frame.planar(self.start(robot, self.schedule.r))
         if self.curve().plan.nearest(first[None])[1][0] >= NEAR:
             return dataclasses.replace(self, path=path)
-        on_path = robot.frame.lift(path.at(np.array(0.0)))
+        on_path = robot.frame.lift(path.at(np.array(path.begin)))
         return dataclasses.replace(self, path=path, start=partial(_always, on_path))
 
     def with_values(self, assignments: Mapping[str, Any]) -> Experiment:
@@ -246,14 +246,14 @@ def _always(point: Array, _robot: Robot, _r: float) -> Array:
 
 
 def on_path(entry: RobotEntry, parameters: Parameters, path: Curve) -> Experiment:
-    """A robot that starts at rest on a path, at θ = 0, without obstructions."""
+    """A robot that starts at rest at the beginning of a path, without obstructions."""
     return Experiment(
         name="on_path",
         title=entry.label,
         entry=entry,
         parameters=parameters,
         schedule=Schedule(),
-        start=lambda robot, _: robot.frame.lift(raised(path, parameters).at(np.array(0.0))),
+        start=lambda robot, _: robot.frame.lift(raised(path, parameters).at(np.array(path.begin))),
         path=path,
         lifts=False,
     )

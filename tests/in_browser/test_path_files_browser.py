@@ -80,7 +80,7 @@ def test_a_drawing_is_brought_to_the_page_its_line_pressed_and_its_size_changed(
         return sorted(np.ptp(points(), axis=0))
 
     short, long = sides()
-    assert short / long == pytest.approx(20 / 28, abs=0.01)
+    assert short / long == pytest.approx(75 / 83, abs=0.01)  # of both lines together
     box = page.locator("polyline").nth(1).bounding_box()
     assert box is not None
     page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
@@ -99,9 +99,12 @@ def test_a_drawing_is_brought_to_the_page_its_line_pressed_and_its_size_changed(
 def test_what_would_help_is_pressed_and_helps(tab: Tab) -> None:
     editor = tab.simulation.editor
     tab.page.evaluate(GIVE, ["paste", "G0 X0 Y0\nG1 X30\nY30\nX0\nY0\n"])
-    tab.page.get_by_text("Your drawing is shown in red").wait_for(timeout=1e3 * WAIT)
-    tab.page.get_by_role("button", name="Round the corners to").click()
-    wait_for(lambda: not editor.faults and editor.design.name == "drawn", WAIT)
-    tab.page.get_by_text("Your drawing is shown in red").wait_for(
-        state="detached", timeout=1e3 * WAIT
-    )
+    wait_for(lambda: editor.design.name == "drawn", WAIT)
+    tab.page.get_by_label("Size [mm]").fill("300")
+    tab.page.keyboard.press("Enter")
+    refusal = tab.page.get_by_text("It cannot be followed")
+    refusal.wait_for(timeout=1e3 * WAIT)
+    wait_for(lambda: editor.faults, WAIT)
+    tab.page.get_by_role("button", name="Smaller:").click()
+    wait_for(lambda: not editor.faults, WAIT)
+    refusal.wait_for(state="detached", timeout=1e3 * WAIT)

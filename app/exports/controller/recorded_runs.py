@@ -69,7 +69,7 @@ def _recorded(design: Design, parameters: Parameters, title: str) -> RecordedRun
         curve=curve,
         parameters=parameters,
         schedule=Schedule(duration=DURATION, hold_from=HOLD[0], hold_to=HOLD[1]),
-        start=robot.frame.lift(curve.at(np.array(0.0))),
+        start=robot.frame.lift(curve.at(np.array(curve.begin))),
     )
     state, settings, _ = running.inputs()
     rows = np.concatenate([part for part, _ in running.parts()])

@@ -122,7 +122,7 @@ class FigureChoice:
     def start_at(self, curve: Curve) -> Array:
         """The configuration at rest on the path at θ = 0, shape (n,)."""
         robot, followed = self.machine, raised(curve, self.parameters)
-        return robot.rest(robot.frame.lift(followed.at(np.array(0.0))))
+        return robot.rest(robot.frame.lift(followed.at(np.array(followed.begin))))
 
     @property
     def planned(self) -> str:

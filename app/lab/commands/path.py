@@ -170,8 +170,7 @@ class DrawPath(Command):
         if stroke.ndim != 2 or stroke.shape[1] != 2 or len(stroke) > MOST_STROKE_POINTS:
             raise CodedError("error.stroke_without_points")
         design = drawn(stroke)
-        commit(lab, design)
-        _remark(lab, lab.words.sentence(deviation_of(design.curve)))
+        _draw(lab, design, lab.words.sentence(deviation_of(design.curve)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -188,8 +187,7 @@ class FollowCurve(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        commit(lab, from_curve(self.curve))
-        _remark(lab, self.remarks)
+        _draw(lab, from_curve(self.curve), self.remarks)
 
 
 @dataclass(frozen=True, slots=True)
@@ -218,11 +216,17 @@ def commit(lab: Lab, design: PathDesign) -> None:
     _end(lab, "say.refused")
 
 
-def _remark(lab: Lab, text: str) -> None:
-    """Add a remark to what the user is told of an edit, unless it is refused."""
-    if not lab.simulation.editor.faults:
-        told = " ".join(filter(None, [text, lab.message]))
-        lab.show_message(told, lab.message_level)
+def _draw(lab: Lab, design: PathDesign, remark: str) -> None:
+    """Let both robots draw a path from its beginning, and say what the user should know of it."""
+    simulation = lab.simulation
+    lab.lessons.judge(simulation)
+    commit(lab, design)
+    if simulation.editor.design is not design:
+        return
+    told, level = " ".join(filter(None, [remark, lab.message])), lab.message_level
+    simulation.editor.settle()
+    simulation.restart()
+    lab.show_message(told, level)
 
 
 def finish(lab: Lab) -> None:
