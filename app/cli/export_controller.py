@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -33,6 +34,9 @@ class ExportController:
     at_fault: Literal["zero", "hold", "damp"] = "zero"
     """Torque after a measurement has been refused: none, the last one, or against the
     velocities."""
+    fastest: float = 100.0
+    """Largest rate of a joint, above which a measurement is refused, in rad/s, or m/s of one that
+    slides."""
     set: Repeated = ()
     """Set any parameter of the robot as name=value; repeat for more."""
     file_options: FileOptions = NO_OPTIONS
@@ -52,10 +56,13 @@ class ExportController:
         settings = {name: value_of(parameters, name) for name in given}
         named = {path_name(each): each for each in self.path or ("circle",)}
         paths = {name: curve_of("--path", each, robot) for name, each in named.items()}
-        made = controller(entry, paths, self.law, at_fault=self.at_fault, **settings)
+        made = controller(
+            entry, paths, self.law, at_fault=self.at_fault, fastest=self.fastest, **settings
+        )
         target = made.save(self.file)
         print(f"{target}: {made.operations:,} operations in a tick")
         replay = target.with_name(f"{target.stem}_replay.c")
-        print(f"compare it with the lab: cc -std=c99 -O2 {target} {replay} -lm && ./a.out")
+        files = shlex.join([str(target), str(replay)])
+        print(f"compare it with the lab: cc -std=c99 -O2 {files} -lm && ./a.out")
         if parameters.torque_limit == 0:
             print("onpath: its torques have no limit: --set torque_limit=...", file=sys.stderr)

@@ -23,8 +23,8 @@ from onpath.models.controller.steps import Steps
 from onpath.models.errors import CodedError
 from onpath.models.paths.curves import Curve
 from onpath.models.studies.experiments import check_path
-from onpath.models.systems.parameter_specs import unknown_name
-from onpath.models.systems.robots import RobotEntry
+from onpath.models.systems.parameter_specs import out_of_range, unknown_name
+from onpath.models.systems.robots import FASTEST_JOINT, RobotEntry
 
 GivenPath = str | Path | Curve
 
@@ -35,6 +35,7 @@ def controller(
     law: Any = "path_following",
     *,
     at_fault: str = "zero",
+    fastest: float = FASTEST_JOINT,
     **settings: Any,
 ) -> Controller:
     """A control law without a plant: `step` turns measurements into torques.
@@ -43,8 +44,8 @@ def controller(
     give the same torques, bit by bit. `save` writes it as C, which gives them, too.
 
     It checks each measurement: that its numbers are finite, that it comes in time, that no joint
-    has jumped, and that the robot is within its limits. It refuses what fails: `code` and `reason`
-    say why, and the torque is what `at_fault` chose until `start` is called.
+    has jumped or is too fast, and that the robot is within its limits. It refuses what fails:
+    `code` and `reason` say why, and the torque is what `at_fault` chose until `start` is called.
 
     It is no safety function: a real arm needs a stop that cuts the power, and its maker's limits.
 
@@ -54,6 +55,8 @@ def controller(
             or a mapping from names to them. All are closed, or none is.
         at_fault: after a measurement has been refused, "zero" torque, "hold" the last torque, or
             "damp": against the velocities, such that a motor alone slows down to 1/e in 0.1 s.
+        fastest: largest rate of a joint, above which a measurement is refused, [rad/s], or [m/s] of
+            one that slides.
         settings: as for `onpath.simulate`. Those of the plant, such as dry friction, are not used;
             `observer_time` is that of the observer which finds the velocities if they are not
             measured, or a filter does if it is 0.
@@ -75,10 +78,13 @@ def controller(
     check_names(settings, entry, controller)
     if at_fault not in AT_FAULT:
         raise unknown_name(at_fault, [*AT_FAULT], "at_fault")
+    check_number("fastest", fastest, "rad/s")
+    if not 0 < fastest <= FASTEST_JOINT:
+        raise out_of_range("fastest", f"{fastest:g}", "0", f"{FASTEST_JOINT:g} rad/s")
     parameters = with_values(entry.parameters(), settings)
     made = entry.make(parameters)
     curves = {key: _checked(given, made) for key, given in _named(path).items()}
-    return Controller(design(made, name, parameters, curves, at_fault), entry)
+    return Controller(design(made, name, parameters, curves, at_fault, fastest), entry)
 
 
 class Controller:
@@ -218,7 +224,8 @@ class Controller:
         """The same controller with other paths or parameters, if it has the same functions."""
         old = self.design
         flat = {name: curve.plan for name, curve in paths.items()}
-        new = design(self.entry.make(parameters), old.law, parameters, flat, old.at_fault)
+        made = self.entry.make(parameters)
+        new = design(made, old.law, parameters, flat, old.at_fault, old.fastest)
         if not new.same_loop(old):
             raise CodedError("error.controller_differs")
         return new

@@ -1377,6 +1377,7 @@ refused-time = die Zeit der Messung ist keine Zahl oder liegt vor der letzten
 refused-late = zwei Regelintervalle lang kam keine Messung
 refused-not_finite = ein Messwert ist keine endliche Zahl
 refused-jump = ein gemessenes Gelenk ist weiter gesprungen, als es sich bewegen kann
+refused-fast = ein Gelenk ist schneller als die Grenze, die dem Regler gesetzt ist
 refused-no_torque = das Regelgesetz ergab eine Zahl, die nicht endlich ist
 efforts-stated = Größte Drehmomente der Motoren laut seiner Datei: { $limits }.
 efforts-exceeded = der Motor von { $joint } gab { $gave }, mehr als die { $limit }, die in der Datei des Roboters stehen; mit einer Motorgrenze von 100 % gibt er nicht mehr

@@ -27,7 +27,6 @@ from onpath.models.controller.functions import (
     controller_kind,
 )
 from onpath.models.errors import CodedError, Message
-from onpath.models.layout import Layout
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.distance import closest_parameter
 from onpath.models.paths.spline_curves import WINDOW
@@ -43,6 +42,7 @@ class Design:
         robot, law, parameters: as in a closed loop.
         paths: by name, at least one; the first is followed first.
         at_fault: one of `AT_FAULT`.
+        fastest: largest rate of a joint that is not refused, [rad/s], or [m/s] if it slides.
         kind: of the loop that the controller is a part of.
         functions: of the controller.
     """
@@ -52,6 +52,7 @@ class Design:
     parameters: Parameters
     paths: Mapping[str, Curve]
     at_fault: str
+    fastest: float
     kind: Kind
     functions: Functions
 
@@ -59,7 +60,10 @@ class Design:
         """The controller's settings on a path, shape (functions.settings.size,)."""
         kernel = kernel_of(self.robot, self.kind)
         whole = settings_vector(self.robot, kernel.layouts, self.parameters, curve, FREE)
-        return _own(self.functions.settings, kernel.settings, whole, self.at_fault)
+        layout, fields = self.functions.settings, kernel.settings.unpack(whole)
+        own = {"at_fault": float(AT_FAULT.index(self.at_fault)), "fastest": self.fastest}
+        used = {name: fields[name] for name, _ in layout.fields if name in fields}
+        return layout.pack(used | own)
 
     @property
     def operations(self) -> int:
@@ -104,14 +108,19 @@ class Design:
 
 
 def design(
-    robot: Robot, law: str, parameters: Parameters, paths: Mapping[str, Curve], at_fault: str
+    robot: Robot,
+    law: str,
+    parameters: Parameters,
+    paths: Mapping[str, Curve],
+    at_fault: str,
+    fastest: float,
 ) -> Design:
     """The controller of a robot under a law.
 
     Args:
         law: name of a law; not of one that is a Python function.
         paths: by name, without the rise of the parameters.
-        at_fault: one of `AT_FAULT`.
+        at_fault, fastest: as in `Design`.
 
     Raises:
         CodedError: the law does not suit the robot, or a path has no level set; the paths are of
@@ -132,13 +141,7 @@ def design(
         parameters=parameters,
         paths=curves,
         at_fault=at_fault,
+        fastest=fastest,
         kind=kinds[0],
         functions=controller_functions(robot.core, kinds[0]),
     )
-
-
-def _own(layout: Layout, loop: Layout, settings: Array, at_fault: str) -> Array:
-    """The settings of a controller from those of the loop."""
-    fields = loop.unpack(settings)
-    own = {name: fields[name] for name, _ in layout.fields if name in fields}
-    return layout.pack(own | {"at_fault": float(AT_FAULT.index(at_fault))})

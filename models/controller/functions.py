@@ -42,10 +42,13 @@ REFUSALS = {
     "late": Message("refused.late"),
     "not_finite": Message("refused.not_finite"),
     "jump": Message("refused.jump"),
+    "fast": Message("refused.fast"),
     "no_torque": Message("refused.no_torque"),
 }
 """Why steps are refused, with codes from 1 on; those of `Robot.reasons` follow. 0 is none."""
 _CODES = {name: number for number, name in enumerate(REFUSALS, 1)}
+OWN_SETTINGS = ("at_fault", "fastest")
+"""Settings that a loop has not: place in `AT_FAULT`, and largest rate of a joint, [rad/s]."""
 HOLD, DAMP = AT_FAULT.index("hold"), AT_FAULT.index("damp")
 _READ = ("encoder", "encoder_rate")
 """Fields of the state that a tick without a measurement leaves as they are."""
@@ -132,7 +135,7 @@ def controller_functions(robot: Robot, kind: Kind) -> Functions:
         kind=kind,
         kernel=kernel,
         state=Layout((*kept, *own)),
-        settings=Layout((*_used(kernel, kind), ("at_fault", 1))),
+        settings=Layout((*_used(kernel, kind), *((name, 1) for name in OWN_SETTINGS))),
     )
     sample = Layout((("t", 1), ("q", system.n), ("v", system.n), ("has_q", 1), ("has_v", 1)))
     basis, step = _basis(symbols), _step(symbols, sample)
@@ -167,9 +170,8 @@ def _count(layout: Layout, size: int) -> int:
 
 def _whole(layout: Layout, settings: Fields) -> Fields:
     sizes = dict(layout.fields)
-    return {name: settings.get(name, ca.SX.zeros(size, 1)) for name, size in sizes.items()} | {
-        "at_fault": settings["at_fault"]
-    }
+    whole = {name: settings.get(name, ca.SX.zeros(size, 1)) for name, size in sizes.items()}
+    return whole | {name: settings[name] for name in OWN_SETTINGS}
 
 
 def _tick_now(state: Fields, settings: Fields, t: ca.SX) -> ca.SX:
@@ -310,6 +312,7 @@ def _code(
         (ca.logic_not(_finite(_numbers(given))), ca.SX(_CODES["not_finite"])),
         (jump, ca.SX(_CODES["jump"])),
         (stop != 0, len(REFUSALS) + stop),
+        (ca.mmax(ca.fabs(measured[1][: system.joints])) > settings["fastest"], _CODES["fast"]),
         (ca.logic_not(_finite(ca.vertcat(*after.values()))), ca.SX(_CODES["no_torque"])),
     ]
     code = ca.SX(0)

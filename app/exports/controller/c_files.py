@@ -52,6 +52,7 @@ MEANINGS = {
     "delay_ticks": "ticks from a measurement to its torque, which the observer knows",
     "model": "parameters of the robot as the law knows them",
     "at_fault": "after a refusal: 0 no torque, 1 the last one, 2 against the velocities",
+    "fastest": "largest rate of a joint that is not refused [rad/s], or [m/s] if it slides",
     "torque_limit": "motors give no more than this; 1e300: no limit",
     "observer_time": "in which the observer forgets its errors",
     "encoder_filter": "time constant of the filter that finds velocities without an observer",

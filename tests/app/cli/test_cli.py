@@ -471,3 +471,19 @@ def test_help_says_how_long_labs_are_kept() -> None:
     text = " ".join(onpath("serve", "--help").stdout.split())
     assert "--keep-days" in text and "(default: 365)" in text
     assert "--most-labs" in text and DATABASE in text
+
+
+def test_a_controller_is_written_with_its_header_and_replay(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "my law.c"
+    command = ["export", "controller", str(file), "--path", "circle,ellipse", "--fastest", "20"]
+    assert run_command([*command, "--set", "torque_limit=2", "--at-fault", "damp"]) == 0
+    said = capsys.readouterr()
+    assert "operations in a tick" in said.out and f"'{file}'" in said.out and said.err == ""
+    names = {each.name for each in tmp_path.iterdir()}
+    assert names == {"my law.c", "my law.h", "my law_replay.c"}
+    assert "MY_LAW_PATHS 2 /* circle, ellipse */" in (tmp_path / "my law.h").read_text("utf-8")
+    assert run_command(["export", "controller", str(tmp_path / "law.txt")]) == 2
+    assert "expected a name ending in .c" in capsys.readouterr().err
+    assert {each.name for each in tmp_path.iterdir()} == names

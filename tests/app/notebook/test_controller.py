@@ -241,6 +241,19 @@ def test_a_bad_measurement_is_refused_for_good_with_the_chosen_torque(
     assert controller.code == 0 and controller.step(t + 0.002, q, [0.0, 0.0]).any()
 
 
+def test_a_joint_that_is_faster_than_allowed_is_refused() -> None:
+    """The observer's velocities count where none are measured."""
+    log = lab_log(**ARM, law="path_following", **RUN)
+    top = float(np.abs(log.v).max())
+    for share, code in ((1.01, 0), (0.9, CODE["fast"])):
+        for exact in (True, False):
+            controller = onpath.controller(**ARM, fastest=share * top)
+            controller.start(0.0, log.q[0])
+            for k, t in enumerate(log.t):
+                controller.step(t, log.q[k], log.v[k] if exact else None)
+            assert controller.code == code
+
+
 def test_damping_takes_no_jump_for_a_speed() -> None:
     controller, q, _ = started(at_fault="damp")
     controller.start(0.05, q)
