@@ -23,6 +23,7 @@ from onpath.models.controller.steps import Steps
 from onpath.models.errors import CodedError
 from onpath.models.paths.curves import Curve
 from onpath.models.studies.experiments import check_path
+from onpath.models.systems.guessed_numbers import guess_sentences
 from onpath.models.systems.parameter_specs import out_of_range, unknown_name
 from onpath.models.systems.robots import FASTEST_JOINT, RobotEntry
 
@@ -199,7 +200,9 @@ class Controller:
         """
         target = Path(file).expanduser()
         check_file(target, (".c",), "controller")
-        for name, text in controller_files(self.design, self.entry.label, target.stem).items():
+        guesses = guess_sentences(self.entry.guesses)
+        files = controller_files(self.design, self.entry.label, target.stem, guesses)
+        for name, text in files.items():
             with whole_file(target.parent / name) as scratch:
                 scratch.write_text(text, "utf-8")
         return target

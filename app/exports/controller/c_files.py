@@ -66,12 +66,15 @@ MEANINGS = {
 """What the fields mean whose declarations do not say it."""
 
 
-def controller_files(design: Design, robot: str, stem: str) -> dict[str, str]:
+def controller_files(
+    design: Design, robot: str, stem: str, guesses: Sequence[str] = ()
+) -> dict[str, str]:
     """Source, header and replay by the names of their files.
 
     Args:
         robot: its label.
         stem: of the files' names; also the prefix of all names in C.
+        guesses: what is guessed about the robot, in sentences.
 
     Raises:
         CodedError: the law has an operation that cannot be translated.
@@ -79,6 +82,7 @@ def controller_files(design: Design, robot: str, stem: str) -> dict[str, str]:
     name = c_name(stem)
     runs = recorded_runs(design)
     values = _values(design, robot, name) | {
+        "guesses": "".join(f"   {_comment(each)}\n" for each in guesses),
         "segment": str(SEGMENT),
         "header": f"{stem}.h",
         "source": f"{stem}.c",

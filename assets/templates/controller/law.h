@@ -1,7 +1,7 @@
 /* $title
 
    Made by OnPath $version. Path: $path_names.
-
+$guesses
    The controller computes torques of motors from what is measured:
 
        ${name}_controller c;

@@ -22,6 +22,7 @@ from onpath.app.notebook.controller import Controller
 from onpath.models.arrays import Array
 from onpath.models.paths.distance import path_distance
 from tests.support.lab_log import lab_log
+from tests.support.robot_files import PLANAR, urdf
 
 COMPILERS = [found for name in ("gcc", "clang") if (found := shutil.which(name))]
 pytestmark = pytest.mark.skipif(not COMPILERS, reason="there is no C compiler")
@@ -230,13 +231,20 @@ def follow_both(in_c: InC, controller: Controller, names: list[str], path: int) 
 
 def test_names_of_a_file_are_safe(tmp_path: Path) -> None:
     """A joint's name cannot end a comment, and a file may have any name."""
-    from tests.support.robot_files import PLANAR, urdf
-
     text = urdf("planar", PLANAR).replace("joint1", "*/ int main(")
     robot = tmp_path / "arm.urdf"
     robot.write_text(text, "utf-8")
     file = onpath.controller(robot).save(tmp_path / "2nd law α.c")
     assert compiled(COMPILERS[0], file).count(EQUAL) == 2
+
+
+def test_what_is_guessed_about_the_robot_stands_in_the_header(tmp_path: Path) -> None:
+    robot = tmp_path / "arm.urdf"
+    text = re.sub("<inertial>.*?</inertial>", "", urdf("planar", PLANAR), flags=re.DOTALL)
+    robot.write_text(text, "utf-8")
+    with pytest.warns(UserWarning, match="states no masses"):
+        file = onpath.controller(robot).save(tmp_path / "law.c")
+    assert "states no masses" in file.with_suffix(".h").read_text("utf-8")
 
 
 def test_the_file_needs_no_library_but_libm_and_no_heap(tmp_path: Path) -> None:
