@@ -9,6 +9,7 @@ import type { Kernels } from "./kernels"
 const [LINE, OUTLINE] = [600, 240] // pieces of a line through points of a series, and of its outline
 const ORDERS = 4 // the curve and its derivatives
 const MOST_VALUES = 12 // of a curve in space
+const BLOCK = 16 // segments of a drawing that have a box in common
 const WORK = 64 // numbers of work that functions share
 
 /** Why a curve cannot be followed: keys of messages, and places in the picture; and its length if
@@ -319,19 +320,40 @@ export class Path {
     private readonly sampled = (i: number): number => (2 * i / (this.data.samples - (this.data.closed ? 0 : 1)) - 1) * Math.PI
     /** Whether strands of the kept curve cross or are too close to each other. */
     private ambiguities(): string[] {
-        const { work, rows, edit: { row }, data: { samples, pieces, closed }, kernels: { numbers } } = this
+        const { work, rows, edit: { row }, data: { samples, pieces }, kernels: { numbers } } = this
         const length = this.length()
-        if (pieces) for (let i = 0; i < samples; i++) numbers[rows + row * i + row - 1] = this.draws(this.sampled(i)) ? 1 : 0
-        const [apart, segments] = pieces ? [2, samples - (closed ? 0 : 1)] : [1, samples] // neighbours of a drawing share a point
+        if (pieces) return this.meets() ? ["fault.crosses"] : []
         let [near, crosses] = [false, false]
-        for (let i = 0; i + apart < segments; i++) {
-            const here = rows + row * i, last = pieces && closed && !i ? segments - 1 : segments
+        for (let i = 0, next = rows + row; i < samples - 1; i++, next += row) {
             numbers.set([0, 0, 0, 0, length], work)
-            this.loop("strands", work, here, here + apart * row, last - i - apart)
+            this.loop("strands", work, next - row, next, samples - 1 - i)
             if (numbers[work]) near = true
             if (numbers[work + 1]) crosses = true
         }
         return crosses ? ["fault.crosses"] : near ? ["fault.narrow"] : []
+    }
+
+    /** Whether a drawing crosses itself, from the rows of its checks: each segment is compared with those blocks whose boxes it meets. */
+    private meets(): boolean {
+        const { work, rows, edit: { row }, data: { samples, closed }, kernels: { numbers } } = this
+        for (let i = 0; i < samples; i++) numbers[rows + row * i + row - 1] = this.draws(this.sampled(i)) ? 1 : 0
+        const segments = samples - (closed ? 0 : 1)
+        const box = (from: number, to: number) => [0, 1].map(k => {
+            const along = Array.from({ length: to - from + 1 }, (_, i) => numbers[rows + row * (from + i) + k]!)
+            return [Math.min(...along), Math.max(...along)] as const
+        })
+        const blocks = Array.from({ length: Math.ceil(segments / BLOCK) }, (_, k) => box(k * BLOCK, Math.min((k + 1) * BLOCK, segments)))
+        for (let i = 0; i < segments; i++) {
+            const own = box(i, i + 1), end = closed && !i ? segments - 1 : segments // neighbours share a point
+            for (let k = Math.floor((i + 2) / BLOCK); k < blocks.length; k++) {
+                if (own.some(([low, high], axis) => low > blocks[k]![axis]![1] || high < blocks[k]![axis]![0])) continue
+                const first = Math.max(k * BLOCK, i + 2), count = Math.min((k + 1) * BLOCK, end) - first
+                numbers.set([0, 0], work)
+                if (count > 0) this.loop("strands", work, rows + row * i, rows + row * first, count)
+                if (numbers[work + 1]) return true
+            }
+        }
+        return false
     }
 
     private take(from: readonly [number, number], to = this.shown): void {

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 import onpath
@@ -17,6 +17,8 @@ from onpath.app.exports.standalone.figure_choice import FigureChoice, chosen
 from onpath.app.exports.standalone.figure_page import figure_page
 from onpath.lessons.words import ENGLISH
 from onpath.models.control.law_poles import channels_of
+from onpath.models.control.laws.registry import LAWS as REGISTERED
+from onpath.models.control.laws.registry import law_named
 from onpath.models.errors import Message
 from onpath.models.paths.curve_faults import ambiguities
 from onpath.models.paths.path_design import presets
@@ -222,6 +224,50 @@ def test_a_drawing_is_followed_as_in_python(drawn: Path, script: list[Act]) -> N
                 assert side.distance() - 1e-5 <= distance <= side.gap() + 1e-12
                 side.state = np.array(state[: len(side.state)])
     assert opened.number("complaints") == []
+    opened.page.close()
+
+
+@settings(max_examples=4, deadline=None)
+@given(st.sampled_from(list(ROBOTS)), st.sampled_from(list(REGISTERED)))
+@example("spatial_arm", "time_optimal_following")
+def test_every_law_follows_a_drawing_on_every_robot_that_it_suits(
+    drawn: Path, robot: str, law: str
+) -> None:
+    entry = ROBOTS[robot]
+    assume(law_named(law).suits(entry.make(entry.parameters()).system))
+    figure = chosen(robot, (law,), {"letters": letters(), "star": star()})
+    file = drawn.with_name("law.html")
+    file.write_text(figure_page(figure, ENGLISH), encoding="utf-8")
+    opened, python = Opened(file), PythonFigure(figure)
+    bent = [("move", [1, [0.0, 0.02]]), ("advance", 400)] if "drag" in figure.controls else []
+    for act in (("choose", 1), *TORN, ("choose", 0), ("advance", 300), *bent):
+        opened.do(act)
+        python.act(act)
+        if act[0] == "advance":
+            rows = np.array(python.rows())
+            np.testing.assert_allclose(opened.number(LOGGED), rows, rtol=0, atol=BENDS)
+    assert opened.number("complaints") == []
+    opened.page.close()
+
+
+@settings(max_examples=12, deadline=None)
+@given(st.integers(0, 2**32), st.integers(0, len(DRAWINGS) - 1))
+def test_a_drawing_that_is_bent_crosses_itself_where_the_lab_says_so(
+    drawn: Path, seed: int, number: int
+) -> None:
+    rng, opened, python = np.random.default_rng(seed), Opened(drawn), PythonFigure(drawings())
+    for act in [("choose", number), *BEGIN[1:]]:
+        opened.do(act)
+        python.act(act)
+    for _ in range(4):
+        points = python.editor.design.points
+        index = int(rng.integers(len(points)))
+        target = points[index] + rng.normal(0, 0.012, 2)
+        for act in (("move", (index, target.tolist())), ("drop", None)):
+            opened.do(act)
+            python.act(act)
+        doubts = [each.reason.code for each in ambiguities(python.editor.design.curve)]
+        assert opened.number("onpath.simulation.followed.doubts") == doubts
     opened.page.close()
 
 
