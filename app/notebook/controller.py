@@ -22,6 +22,7 @@ from onpath.models.controller.functions import AT_FAULT
 from onpath.models.controller.steps import Steps
 from onpath.models.errors import CodedError
 from onpath.models.paths.curves import Curve
+from onpath.models.paths.spline_curves import SplineCurve
 from onpath.models.studies.experiments import check_path
 from onpath.models.systems.guessed_numbers import guess_sentences
 from onpath.models.systems.parameter_specs import out_of_range, unknown_name
@@ -186,6 +187,12 @@ class Controller:
     def theta(self) -> float:
         """Parameter of the closest point of the path, [rad]."""
         return float(self._steps.fields["theta"][0]) if self._steps.started else np.nan
+
+    @property
+    def draws(self) -> bool:
+        """Whether the pen is down: not on a link between two strokes of a drawing."""
+        curve = self._curve
+        return not isinstance(curve, SplineCurve) or bool(curve.draws(np.array(self.theta)))
 
     @property
     def operations(self) -> int:

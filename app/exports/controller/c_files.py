@@ -28,7 +28,7 @@ from onpath.models.controller.design import Design
 from onpath.models.controller.functions import REFUSALS
 from onpath.models.layout import Layout
 from onpath.models.paths.curves import ORDERS, Curve
-from onpath.models.paths.spline_curves import WINDOW
+from onpath.models.paths.spline_curves import WINDOW, SplineCurve
 
 REFINEMENTS = 4
 """Steps of the search for the closest point."""
@@ -143,6 +143,8 @@ def _values(design: Design, robot: str, name: str) -> dict[str, str]:
         "refinements": str(REFINEMENTS),
         "first": c_number(-np.pi),
         "spacing": c_number(2 * np.pi / (grid if curves[0].closed else grid - 1)),
+        "raised_count": str(max(1, *(len(_raised(curve)) for curve in curves))),
+        "raised": _links(curves),
         "table_size": str(rows * points),
         "tables": _tables(curves),
         "defaults": _structs(functions.settings, settings),
@@ -192,6 +194,19 @@ def _members(layout: Layout, design: Design) -> str:
 
 def _tables(curves: Sequence[Curve]) -> str:
     return "{\n" + ",\n".join(c_array(curve.table().tolist()) for curve in curves) + "\n}"
+
+
+def _raised(curve: Curve) -> tuple[tuple[float, float], ...]:
+    return curve.raised if isinstance(curve, SplineCurve) else ()
+
+
+def _links(curves: Sequence[Curve]) -> str:
+    """The raised links of each path, padded with NaN."""
+    most = max(1, *(len(_raised(curve)) for curve in curves))
+    nothing = (np.nan, np.nan)
+    padded = [[*_raised(curve), *[nothing] * (most - len(_raised(curve)))] for curve in curves]
+    rows = ["{" + ", ".join(c_array(pair) for pair in each) + "}" for each in padded]
+    return "{\n" + ",\n".join(rows) + "\n}"
 
 
 def _structs(layout: Layout, vectors: Sequence[Array]) -> str:

@@ -11,10 +11,14 @@ enum {
     COLUMNS = $columns, /* places at which the path is evaluated */
     NUMBERS = $numbers, /* a point and its derivatives */
     GRID = $grid,       /* points of the path from which the search for the closest one begins */
-    REFINEMENTS = $refinements
+    REFINEMENTS = $refinements,
+    RAISED = $raised_count /* links between strokes, the most of a path */
 };
 
 static const double paths[${upper}_PATHS][$table_size] = $tables;
+
+/* From which theta to which the pen is up; the rest is no number. */
+static const double raised[${upper}_PATHS][RAISED][2] = $raised;
 
 static const ${name}_settings settings_of[${upper}_PATHS] = $defaults;
 
@@ -33,6 +37,7 @@ void ${name}_init(${name}_controller *c)
 
     c->settings = settings_of[0];
     c->path = paths[0];
+    c->raised = raised[0];
     begin(&c->state, 0.0, rest, rest, 0.0);
     c->state.code = ${upper}_NOT_STARTED;
 }
@@ -92,6 +97,19 @@ void ${name}_follow(${name}_controller *c, int path)
         return;
     }
     c->path = paths[path];
+    c->raised = raised[path];
 $following    c->state.theta = ${name}_closest(c, c->state.q);
     c->state.theta_ref = c->state.theta;
+}
+
+int ${name}_draws(const ${name}_controller *c)
+{
+    int i;
+
+    for (i = 0; i < RAISED; i++) {
+        if (c->raised[i][0] < c->state.theta && c->state.theta < c->raised[i][1]) {
+            return 0;
+        }
+    }
+    return 1;
 }

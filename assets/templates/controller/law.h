@@ -58,6 +58,7 @@ typedef struct {
     ${name}_settings settings;
     ${name}_state state;
     const double *path;
+    const double (*raised)[2];
 } ${name}_controller;
 
 /* The settings as exported, the first path, and not started. */
@@ -79,6 +80,9 @@ int ${name}_step(${name}_controller *c, double t, const double q[${upper}_COORDI
 /* Follow another of the exported paths from the next step on: from its point that is closest to
    the end-point of the last step. */
 void ${name}_follow(${name}_controller *c, int path);
+
+/* Whether the pen is down where the end-point is: 0 on a link between two strokes of a drawing. */
+int ${name}_draws(const ${name}_controller *c);
 
 #ifdef __cplusplus
 }

@@ -100,7 +100,7 @@ class InC:
         self._library.law_closest.restype = ctypes.c_double
         functions = controller.design.functions
         self._settings, self._m = functions.settings, controller.design.robot.system.m
-        size = functions.settings.size + functions.state.size + 1  # and a pointer
+        size = functions.settings.size + functions.state.size + 2  # and two pointers
         self._memory = np.zeros(size)
         self._library.law_init(self._place(self._memory))
 
@@ -110,6 +110,10 @@ class InC:
 
     def closest(self, q: Array) -> float:
         return self._library.law_closest(self._place(self._memory), self._place(q))
+
+    @property
+    def draws(self) -> bool:
+        return bool(self._library.law_draws(self._place(self._memory)))
 
     def follow(self, path: int) -> None:
         self._library.law_follow(self._place(self._memory), ctypes.c_int(path))
@@ -236,6 +240,27 @@ def test_names_of_a_file_are_safe(tmp_path: Path) -> None:
     robot.write_text(text, "utf-8")
     file = onpath.controller(robot).save(tmp_path / "2nd law α.c")
     assert compiled(COMPILERS[0], file).count(EQUAL) == 2
+
+
+@pytest.mark.filterwarnings("ignore:.*The pen is raised")
+def test_the_pen_is_up_between_the_strokes_of_a_drawing(tmp_path: Path) -> None:
+    """As the path says, in C and in Python, at places all along it."""
+    pytest.importorskip("svgpathtools")
+    lines = '<path d="M5 5 L35 5 L35 30"/><path d="M45 10 L75 50 L45 50"/>'
+    text = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 80 60">{lines}</svg>'
+    (tmp_path / "strokes.svg").write_text(text, "utf-8")
+    path = f"@{tmp_path / 'strokes.svg'} fit=0.08"
+    controller = onpath.controller("two_link_arm", path)
+    in_c, design = InC(controller, tmp_path), controller.design
+    robot, curve = design.robot, next(iter(design.paths.values()))
+    seen = set[bool]()
+    for theta in np.linspace(-3, 3, 61):
+        q = robot.rest(robot.frame.lift(curve.at(theta)))
+        controller.start(0.0, q, theta=float(theta))
+        in_c.start(0.0, q, None, float(theta))
+        assert controller.draws == in_c.draws
+        seen.add(controller.draws)
+    assert seen == {True, False}
 
 
 def test_what_is_guessed_about_the_robot_stands_in_the_header(tmp_path: Path) -> None:
