@@ -123,7 +123,7 @@ class Experiment:
     def along(self, path: Curve, name: str = "") -> Experiment:
         """The experiment on another path, with the name that the user gives it.
 
-        The end-point starts at the same point, or where the path begins if it was on the former one.
+        The end-point starts at the same point, or where the path begins if it was on the former.
 
         Raises:
             ValueError: the robot cannot follow the path; the message says why.
