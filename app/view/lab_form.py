@@ -90,7 +90,7 @@ GROUP_OF_OTHERS = {
 }
 """Group of each field that is no declared setting."""
 FIRST = (
-    *("robot", "path", "draw", "file", "undo", "redo", "speed"),
+    *("robot", "path", "draw", "file", "undo", "redo", "speed", "pace"),
     *(f"{part}{side}" for side in SIDES for part in ("", "typed_", "about_")),
     *("laws", "compare", "keep"),
 )
@@ -195,6 +195,8 @@ def values_in(
         if name not in ELSEWHERE:
             values[name] = getattr(settings, name)
     values["path"] = snapshot.edit.name
+    fastest = snapshot.edit.fastest
+    values["pace"] = words("design.pace", speed=f"{1e3 * fastest:.0f}") if fastest else ""
     values["can_undo"], values["can_redo"] = snapshot.edit.can_undo, snapshot.edit.can_redo
     selected, points = snapshot.edit.selected, snapshot.edit.points
     values |= {"point": 0, "point_z1": 0.0, "point_z2": 0.0}
@@ -323,6 +325,7 @@ def _fields(lab: _Lab, marks: Mapping[str, FieldValue], words: Words) -> dict[st
         _button("file", words("setup.file"), help=words("setup.file_hint")),
         _button("undo", words("design.undo"), Undo(), needs="can_undo"),
         _button("redo", words("design.redo"), Redo(), needs="can_redo"),
+        FormField(name="pace", kind="note", label=""),
         *_law_fields(robot, chosen, words),
         _button("laws", words("laws.about")),
         _button("compare", words("setup.compare")),

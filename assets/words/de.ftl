@@ -639,6 +639,7 @@ design-size = Größe [mm]
 design-size_hint = Die längere Seite der Bahn; 0 lässt die Längen, wie sie in der Datei sind
 design-radius = Radius der Ecken [mm]
 design-radius_hint = Bögen mit diesem Radius ersetzen die Ecken; 0: Ecken werden nur so weit gerundet, wie es die Roboter brauchen
+design-pace = Bis zu { $speed } mm/s entlang der Zeichnung, in Biegungen langsamer.
 design-open = Offene Bahn
 design-open_hint = Das Ende wird nicht mit dem Anfang verbunden; sonst wie in der Datei, und Punkte werden verbunden
 design-upload = Datei wählen

@@ -554,6 +554,7 @@ design-size = Size [mm]
 design-size_hint = The larger side of the path; 0 leaves the lengths as they are in the file
 design-radius = Corners’ radius [mm]
 design-radius_hint = Arcs of this radius take the place of corners; 0: corners are rounded only as much as the robots need
+design-pace = Up to { $speed } mm/s along the drawing, slower in bends.
 design-open = Open path
 design-open_hint = The end is not joined to the beginning; otherwise as the file says, and points are joined
 design-upload = Choose a file

@@ -70,6 +70,7 @@ class PathEdit:
         points: control points as shown, shape (k, 2), [m].
         selected: index of the selected control point, or None.
         can_undo, can_redo: whether there is an edit to undo, or one that was undone.
+        fastest: the largest speed that is wanted along a drawing, [m/s]; 0 on other paths.
     """
 
     version: int
@@ -79,6 +80,7 @@ class PathEdit:
     selected: int | None
     can_undo: bool
     can_redo: bool
+    fastest: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

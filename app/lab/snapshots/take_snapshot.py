@@ -32,6 +32,7 @@ from onpath.lessons.progress import Truth
 from onpath.lessons.schema import Sketch
 from onpath.lessons.words import Words
 from onpath.models.arrays import Array
+from onpath.models.closed_loop.simulation import speed_on
 from onpath.models.control.settable import values_of
 from onpath.models.control.sides import RIGHT
 from onpath.models.paths.curve_fit import FAR
@@ -292,7 +293,23 @@ def _path_edit(simulation: Simulation) -> PathEdit:
         selected=editor.selected,
         can_undo=editor.can_undo,
         can_redo=editor.can_redo,
+        fastest=_fastest(simulation),
     )
+
+
+def _fastest(simulation: Simulation) -> float:
+    """The largest speed that is wanted along a drawing, [m/s]; 0 on other paths."""
+    curve, parameters = simulation.editor.blend.target, simulation.parameters
+    if not isinstance(curve, SplineCurve) or parameters.task == "position":
+        return 0.0
+    return abs(speed_on(parameters, curve)) * _steepest(curve)
+
+
+@lru_cache(maxsize=128)
+def _steepest(curve: SplineCurve) -> float:
+    """The largest |σ'| where the pen is down, [m/rad]."""
+    theta = curve.sample()
+    return float(np.linalg.norm(curve.at(theta[curve.draws(theta)], 1), axis=1).max())
 
 
 @lru_cache(maxsize=128)

@@ -30,6 +30,7 @@ def clock_rate(clock: Clock) -> ca.SX:
     moving = task.speed
     if not clock.closed:
         back, ahead = (-np.pi - clock.theta) / dt, (np.pi - clock.theta) / dt
+        back, ahead = ca.fmin(back, 0), ca.fmax(ahead, 0)  # a point beyond an end is not sent back
         moving = ca.fmin(ca.fmax(moving, back), ahead)
     return ca.if_else(task.position, homing, moving)
 

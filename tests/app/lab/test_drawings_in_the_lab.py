@@ -5,12 +5,22 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from onpath.app.channel.form_messages import FieldValue
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands.path import FollowCurve
+from onpath.app.lab.lab import Lab
+from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
+from onpath.app.view.lab_form import values_in
+from onpath.lessons.words import ENGLISH
 from onpath.models.control.sides import SIDES
 from onpath.models.paths.distance import path_distance
+from onpath.models.paths.spline_curves import SplineCurve
 from onpath.models.paths.spline_fit import spline_through
-from tests.support.lab import do, new_lab, run
+from tests.support.lab import FOLLOWER, do, new_lab, run
+
+
+def values(lab: Lab) -> dict[str, FieldValue]:
+    return values_in(take_page_snapshot(lab, 1.0), {}, (), ENGLISH)
 
 
 def word(seed: int) -> FollowCurve:
@@ -66,3 +76,21 @@ def test_nothing_is_compiled_for_another_drawing_a_drag_or_a_stroke(
         do(lab, c.MovePoint(1, points[1] + 1e-3), c.AddPoint(), c.Undo())
         run(lab, 0.5)
     assert made == []
+
+
+def test_the_speed_along_a_drawing_is_told_as_it_is_run() -> None:
+    lab, command = new_lab(0.2), word(3)
+    assert values(lab)["pace"] == ""
+    do(lab, command)
+    curve = command.curve
+    assert isinstance(curve, SplineCurve)
+    for speed in (3.0, 6.0):
+        do(lab, c.Set("speed", speed), c.Reset())
+        told, fastest = str(values(lab)["pace"]), 0.0
+        for _ in range(round(60 * curve.duration / speed)):
+            run(lab, 0.1)
+            row = lab.simulation.runs[FOLLOWER].shown()
+            if curve.draws(row["theta"])[0]:
+                fastest = max(fastest, 1e3 * abs(float(row["speed"][0])))
+        said = float(told.removeprefix("Up to ").split(" ")[0])
+        assert 0.9 * said < fastest < 1.02 * said
