@@ -10,10 +10,13 @@ from collections.abc import Callable
 
 from onpath.app.classroom.classroom import Classroom, Orders
 from onpath.app.common.periodic import Periodic
-from onpath.app.lab.commands import Freeze, HoldVotes, KeepWithin
+from onpath.app.lab.commands import Freeze, HoldVotes, KeepWithin, SayLate
 from onpath.app.lab.lab import Lab
+from onpath.lessons.progress import Notes, Progress
+from onpath.lessons.votes import counted
 
 SYNC_INTERVAL = 0.25  # [s] between rounds through the labs of a class
+NOTHING = Notes()
 GAINS = ("K1", "K2", "K3", "K4", "K5")
 Find = Callable[[str], tuple[Lab, bool] | None]
 """The lab of a code and whether a browser is connected; None if it is not here."""
@@ -68,6 +71,8 @@ class ClassSync:
         changes: dict[str, object] = {}
         if lab.lessons.progress is not member.progress:
             changes["progress"] = lab.lessons.progress
+            if self._is_late(member.progress, lab.lessons.progress):
+                lab.post(SayLate())
         if connected != member.connected:
             changes |= {"connected": connected, "aside": member.aside and not connected}
         gains = gains_of(lab)
@@ -84,6 +89,18 @@ class ClassSync:
             lab.post(HoldVotes(votes))
         if changes:
             self._class.note(code, **changes)
+
+    def _is_late(self, before: Progress, now: Progress) -> bool:
+        """Whether an answer has come that does not count, since its vote is closed."""
+        for vote in self._class.votes:
+            known, found = (each.notes.get(vote.lesson, NOTHING) for each in (before, now))
+            if found.given is known.given:
+                continue
+            new = [each for each in found.given if each not in known.given]
+            came = [e for e in new if e.item == vote.item and bool(e.round) == vote.again]
+            if came and counted(found, vote.item, vote, vote.again) is None:
+                return True
+        return False
 
 
 def _give(orders: Orders, lab: Lab, is_new: bool) -> None:

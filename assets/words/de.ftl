@@ -355,6 +355,7 @@ class-late =
     }
 class-closes = Die Abstimmung endet in { $seconds } s.
 class-closed = Die Abstimmung ist beendet.
+class-came_late = Die Abstimmung ist beendet: Deine Antwort wird aufgehoben, zählt aber nicht.
 class-close_vote = Abstimmung beenden
 class-open_vote = Abstimmung wieder öffnen
 class-vote_is_open = Die Klasse stimmt noch ab. Es geht weiter, wenn deine Lehrkraft die Abstimmung beendet.

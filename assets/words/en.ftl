@@ -357,6 +357,7 @@ class-late =
     }
 class-closes = The vote closes in { $seconds } s.
 class-closed = The vote is closed.
+class-came_late = The vote is closed: your answer is kept, but does not count.
 class-close_vote = Close the vote
 class-open_vote = Open the vote again
 class-vote_is_open = The class is still voting. You can go on when your teacher closes the vote.

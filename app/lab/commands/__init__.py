@@ -6,6 +6,7 @@ from onpath.app.lab.commands.classroom import (
     HoldVotes,
     KeepWithin,
     ReportState,
+    SayLate,
     TakeSetup,
     TakeStep,
 )
@@ -112,6 +113,7 @@ __all__ = [
     "ReportState",
     "Reset",
     "ResetParameters",
+    "SayLate",
     "SelectNext",
     "SelectPoint",
     "Set",

@@ -131,6 +131,17 @@ class HoldVotes(Command):
 
 
 @dataclass(frozen=True, slots=True)
+class SayLate(Command):
+    """Say that an answer came after the vote was closed."""
+
+    from_teacher: ClassVar[bool] = True
+
+    @override
+    def apply(self, lab: Lab) -> None:
+        lab.show_message(lab.words("class.came_late"), "warning")
+
+
+@dataclass(frozen=True, slots=True)
 class ReportState(Command):
     """Report the lab's current state to a callback, which must not block."""
 

@@ -225,6 +225,27 @@ def test_nobody_goes_on_or_lets_it_run_before_the_vote_is_closed(course: Course)
     assert lab.lessons.votes == ()
 
 
+def test_who_answers_too_late_is_told_so_and_who_changes_an_answer_is_not(course: Course) -> None:
+    room = Classroom(lambda: 0.0, now=Clock())
+    labs = {name: Lab(loop_cache(), FIVE_BAR, course) for name in ("ada", "ben")}
+    sync = ClassSync(room, lambda code: (labs[code], True))
+    for name, lab in labs.items():
+        room.join(name, room.code, name)
+        lab.lessons.clock = room.now
+    room.push(TakeStep(LESSON, CHOICE), [str(CHOICE)])
+    sync.check()
+    do(labs["ada"], c.Predict(option=0))
+    room.close(room.open_votes)
+    room.now.time += 1.0  # type: ignore[attr-defined]
+    for lab in labs.values():
+        do(lab, c.Predict(option=1))
+    sync.check()
+    for lab in labs.values():
+        do(lab)
+    late = ENGLISH("class.came_late")
+    assert [lab.message == late for lab in labs.values()] == [False, True]
+
+
 # The teacher's page.
 
 
