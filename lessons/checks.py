@@ -235,11 +235,10 @@ def _(check: Order, record: Record, words: Words) -> Verdict:
 @verdict.register
 def _(check: Setting, record: Record, words: Words) -> Verdict:
     values: dict[str, object] = {"path": record.path, "robot": record.robot}
-    values |= {"length": record.length()}
     values["path"] = record.path if record.path in presets() else OWN
     values |= {**DEFAULT_LAWS, **{side: short_name(law) for side, law in record.laws.items()}}
     values = values_of(record.parameters) | values
-    value = values.get(check.name)
+    value = record.length() if check.name == "length" else values.get(check.name)
     equals, wanted = setting_wanted(check, words)
     if equals is not None:
         passed = _same(value, equals)

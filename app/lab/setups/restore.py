@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from onpath.app.lab.path_editor import BLEND
-from onpath.app.lab.setups.plan import own_settings, planned, wanted_robot
-from onpath.app.lab.setups.setup import RobotSetup, Setup
+from onpath.app.lab.setups.plan import own_settings, planned
+from onpath.app.lab.setups.setup import Setup
 from onpath.app.lab.simulation import Simulation
 from onpath.models.closed_loop.lab_settings import settings_kept
 from onpath.models.control.sides import checked_laws
@@ -19,8 +19,6 @@ def restore(simulation: Simulation, setup: Setup) -> None:
         ValueError: the set-up is impossible; the simulation is unchanged.
     """
     wanted = planned(setup)
-    for name in (simulation.entry.name, *simulation.earlier):
-        wanted.setdefault(name, wanted_robot(name, RobotSetup()))
     for robot in wanted.values():
         if reasons := robot.path_faults:
             raise CodedError("error.cannot_follow", robot=robot.entry.label, reasons=reasons)
@@ -40,4 +38,6 @@ def restore(simulation: Simulation, setup: Setup) -> None:
         simulation.set_parameters(robot.parameters)
         kept = settings_kept("code", of_robot=True)
         simulation.set(**{name: getattr(robot.own, name) for name in kept})
+    for name in set(simulation.earlier) - set(wanted):
+        del simulation.earlier[name]  # it begins anew when it is chosen
     simulation.reset(laws)
