@@ -89,6 +89,10 @@ class AskPlace(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", 
     """Ask the teacher for the place of the same name that is away; see `ClassMessage.away`."""
 
 
+class ForgetMe(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="forget_me"):
+    """Delete the lab with everything that is stored of the student, and leave the class."""
+
+
 class Teach(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="teach"):
     """Open the teacher's page with the teacher's key.
 
@@ -98,7 +102,7 @@ class Teach(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag
     key: Typed
 
 
-SeatRequest = JoinClass | LeaveClass | AskPlace | Teach
+SeatRequest = JoinClass | LeaveClass | AskPlace | ForgetMe | Teach
 """What changes the lab's place in the class."""
 
 Request = (
@@ -392,6 +396,6 @@ class SeatAnswer(Struct, frozen=True, kw_only=True, tag_field="is", tag="seat"):
         address: where the page of the class is, if it is another one; else empty.
     """
 
-    of: Literal["join", "leave", "ask_place", "teach"]
+    of: Literal["join", "leave", "ask_place", "forget_me", "teach"]
     why: str = ""
     address: str = ""

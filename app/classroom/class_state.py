@@ -52,6 +52,7 @@ class StoredClass(msgspec.Struct, frozen=True):
     pace: Pace | None = None
     display: Any = None
     votes: list[Any] = []
+    days: Count = 0
 
 
 def to_stored(state: ClassState, now: float) -> Stored:
@@ -78,6 +79,7 @@ def to_stored(state: ClassState, now: float) -> Stored:
         pace=orders.pace,
         display=asdict(state.display),
         votes=[asdict(each) for each in state.votes],
+        days=state.days,
     )
     return msgspec.to_builtins(stored)
 
@@ -115,6 +117,7 @@ def from_stored(data: Stored | None, progress: Callable[[str], Progress], now: f
         passes=frozenset(kept.passes),
         members=members,
         votes=tuple(filter(None, map(_vote, kept.votes[-MOST_VOTES:]))),
+        days=kept.days,
     )
 
 

@@ -110,6 +110,7 @@ class ClassState:
         passes: hashes of the teachers' passes.
         members: students by lab code, in order of joining.
         votes: on the questions that were put to the class.
+        days: after so many days without a change, the class is deleted; 0: as many as may be.
     """
 
     joined: int = 0
@@ -118,6 +119,7 @@ class ClassState:
     passes: frozenset[str] = frozenset()
     members: Mapping[str, Member] = field(default_factory=dict)
     votes: tuple[Vote, ...] = ()
+    days: int = 0
 
 
 @dataclass(slots=True)
@@ -128,6 +130,7 @@ class Classroom:
         clock: monotonic time, [s].
         now: seconds since 1970, by which answers are late.
         key: the teacher's key, in the stored form of `app.common.access_codes`.
+        most_days: the most days for which a class is kept without a change; 0: it is not stored.
         code: the class code, the same in every process with this key; it is in the class's address.
         state: everything that is stored; replaced at each change.
         claims: labs of students who say that a place is theirs whose lab is away -> that lab.
@@ -136,6 +139,7 @@ class Classroom:
     clock: Callable[[], float] = time.monotonic
     now: Callable[[], float] = field(default=time.time, kw_only=True)
     key: str = field(default_factory=new_code, repr=False)
+    most_days: int = field(default=0, kw_only=True)
     code: str = field(init=False)
     state: ClassState = field(default_factory=ClassState)
     claims: dict[str, str] = field(default_factory=dict[str, str], init=False)
@@ -362,6 +366,16 @@ class Classroom:
         """
         with self._lock:
             self.state = replace(self.state, orders=replace(self.orders, pace=pace))
+
+    @property
+    def days(self) -> int:
+        """For how many days without a change the class is kept; 0 if it is not stored."""
+        return min(self.state.days or self.most_days, self.most_days)
+
+    def keep_for(self, days: int) -> None:
+        """Delete the class after fewer days without a change than it could be kept."""
+        with self._lock:
+            self.state = replace(self.state, days=days)
 
     def end(self) -> int:
         """End the class: remove all members, and return their number. Code and key stay."""

@@ -53,6 +53,9 @@ class Serve:
     given cannot be used, the lab does not start; the same holds behind a proxy (--origin)."""
     keep_days: int = 365
     """After this number of days without use, a lab is deleted."""
+    keep_class_days: int = 7
+    """After this number of days without a change, a class is deleted, with its nicknames; its
+    teacher may choose fewer."""
     most_labs: int = 100_000
     """If the database holds more labs, the least recently used are deleted, but none in use."""
     classroom: bool = False
@@ -137,7 +140,7 @@ class Serve:
                     settings=self._settings(entry),
                     classrooms=classrooms,
                     most_clients=self.most_clients,
-                    retention=Retention(self.keep_days, self.most_labs),
+                    retention=Retention(self.keep_days, self.most_labs, self.keep_class_days),
                     hang_seconds=self.hang_seconds,
                     privacy_url=self.privacy_url,
                     course_url=self.course_url,

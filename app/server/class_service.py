@@ -139,6 +139,8 @@ class ClassService:
             leave=lambda: self._class.leave(code),
             away=away,
             ask_place=ask_place,
+            forget=lambda: self._delete(code),
+            days=lambda: self._class.days,
             teach=teach,
             code=self._class.code,
         )

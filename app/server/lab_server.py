@@ -193,6 +193,9 @@ class LabServer:
             self._options.records.close()
 
     def _class_service(self, classroom: Classroom, prefix: str) -> ClassService:
+        records = self._options.records
+        if records is not None and not records.warning:
+            classroom.most_days = self._options.retention.class_days
         return ClassService(
             classroom,
             registry=self.registry,

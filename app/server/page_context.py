@@ -24,6 +24,9 @@ class ClassSeat:
         away: the nickname of somebody away who may be the same student, else "", and whether the
             teacher has been asked for that place.
         ask_place: asks the teacher for it.
+        forget: deletes the lab with everything that is stored of the student; raises ValueError or
+            OSError with a message.
+        days: for how many days without a change the class is kept; 0 if it is not stored.
         code: the class code, if the page's address has it; else a student types it.
     """
 
@@ -32,6 +35,8 @@ class ClassSeat:
     teach: Callable[[str], str]
     away: Callable[[], tuple[str, bool]] = lambda: ("", False)
     ask_place: Callable[[], None] = lambda: None
+    forget: Callable[[], None] = lambda: None
+    days: Callable[[], int] = int
     code: str = ""
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections import deque
 from collections.abc import Callable
+from datetime import date
 from functools import partial
 from typing import Any
 
@@ -213,6 +214,8 @@ class PageData:
             longest=LONGEST_NAME,
             days=context.keep_days,
             privacy=context.privacy_url,
+            today=date.today(),
+            class_days=0 if context.seat is None else context.seat.days(),
             away=("", False) if context.seat is None else context.seat.away(),
         )
 

@@ -14,6 +14,7 @@ from onpath.app.channel.sheet_messages import (
     ChooseTip,
     CompareLaws,
     EnterLab,
+    ForgetMe,
     Freehand,
     JoinClass,
     LeaveClass,
@@ -86,7 +87,7 @@ class PageRequests:
                 self._press(lambda: choose(robot, tip), self._context.remark, words)
             case CompareLaws(laws=laws, obstruction=obstruction):
                 self._compare(laws, obstruction, snapshot, words, tell)
-            case JoinClass() | LeaveClass() | AskPlace() | Teach():
+            case JoinClass() | LeaveClass() | AskPlace() | ForgetMe() | Teach():
                 self._sit(request, words, tell)
 
     def _sit(self, request: SeatRequest, words: Words, tell: Tell) -> None:
@@ -141,7 +142,7 @@ _NO_SEAT = ClassSeat(join=_no_class, leave=_no_class, teach=_no_class)
 
 def _seat_act(
     request: SeatRequest, seat: ClassSeat
-) -> tuple[Literal["join", "leave", "ask_place", "teach"], Callable[[], str]]:
+) -> tuple[Literal["join", "leave", "ask_place", "forget_me", "teach"], Callable[[], str]]:
     """The name of a request, and what it does; that returns the address to go to, or nothing."""
     match request:
         case JoinClass(code=code, name=name):
@@ -150,5 +151,7 @@ def _seat_act(
             return "leave", lambda: seat.leave() or ""
         case AskPlace():
             return "ask_place", lambda: seat.ask_place() or ""
+        case ForgetMe():
+            return "forget_me", lambda: seat.forget() or ""
         case Teach(key=key):
             return "teach", lambda: seat.teach(key)

@@ -1,6 +1,6 @@
 """Deletes stored labs that have not been used for long, and the least recent if there are too many.
 
-Classes are deleted a week after their last change.
+Classes are deleted some days after their last change.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
+import msgspec
 import sqlalchemy as sa
 
 from onpath.app.common.periodic import Periodic
@@ -35,6 +36,8 @@ class Retention:
     Attributes:
         days: a lab that has not been used for this number of days is deleted.
         most: if a database holds more labs, the least recently used are deleted.
+        class_days: a class that has not been changed for this number of days is deleted, or sooner
+            if its teacher wants.
 
     Raises:
         ValueError: a number is not positive.
@@ -42,12 +45,28 @@ class Retention:
 
     days: int = KEEP_DAYS
     most: int = MOST_LABS
+    class_days: int = CLASS_DAYS
 
     def __post_init__(self) -> None:
         if self.days < 1:
             raise ValueError(f"--keep-days {self.days}: expected 1 or more")
         if self.most < 1:
             raise ValueError(f"--most-labs {self.most}: expected 1 or more")
+        if self.class_days < 1:
+            raise ValueError(f"--keep-class-days {self.class_days}: expected 1 or more")
+
+
+def kept_days(state: str, most: int) -> int:
+    """For how many days a stored class is kept: as its teacher wants, but at most `most`."""
+    try:
+        days = msgspec.json.decode(state, type=_Kept).days
+    except msgspec.DecodeError:
+        return most
+    return min(days, most) if days > 0 else most
+
+
+class _Kept(msgspec.Struct):
+    days: int = 0
 
 
 class Expiry:
@@ -93,10 +112,18 @@ class Expiry:
         old = labs.c.updated < now - self._retention.days * DAY
         wanted = (old | labs.c.code.in_(surplus)) & (labs.c.updated < now - IN_USE)
         with self._records.transaction() as connection:
-            ended = classes.c.updated < now - CLASS_DAYS * DAY
-            connection.execute(sa.delete(classes).where(ended))
+            self._end_classes(connection, now)
             connection.execute(sa.delete(leases).where(leases.c.until < now - DAY))
             return connection.execute(sa.delete(labs).where(wanted)).rowcount
+
+    def _end_classes(self, connection: sa.Connection, now: float) -> None:
+        """Delete the classes whose time is over; that of a broken one is the longest."""
+        columns = classes.c.code, classes.c.updated, classes.c.state
+        rows = connection.execute(sa.select(*columns).where(classes.c.updated < now - DAY)).all()
+        for code, updated, state in rows:
+            if updated < now - kept_days(state, self._retention.class_days) * DAY:
+                same = (classes.c.code == code) & (classes.c.updated == updated)
+                connection.execute(sa.delete(classes).where(same))
 
     def _run(self) -> None:
         try:

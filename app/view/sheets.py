@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from datetime import date, timedelta
 
 from msgspec import Struct
 
@@ -77,6 +78,15 @@ def display_sheet(preferences: Mapping[str, bool]) -> DisplaySheet:
     )
 
 
+def _stored(words: Words, days: int, class_days: int, today: date) -> str:
+    """What is stored of a student, and until when."""
+    stored = words("class.stored", days=days)
+    if not class_days:
+        return stored
+    when = (today + timedelta(days=class_days)).strftime(words("class.date"))
+    return f"{stored} {words('class.kept_until', days=class_days, date=when)}"
+
+
 def class_message(
     words: Words,
     place: str | None,
@@ -85,6 +95,8 @@ def class_message(
     longest: int,
     days: int,
     privacy: str,
+    class_days: int = 0,
+    today: date = date.min,
     away: tuple[str, bool] = ("", False),
 ) -> ClassMessage:
     """The lab's place in a class.
@@ -97,6 +109,9 @@ def class_message(
         days: number of days without use after which the lab is deleted; 0 if it lasts only as long
             as the server.
         privacy: the address of the site's privacy notice; may be empty.
+        class_days: number of days without a change after which the class is deleted; 0 if it is not
+            stored.
+        today: from which these days count.
         away: see `ClassMessage.away` and `asked`.
     """
     if place is None:
@@ -108,7 +123,7 @@ def class_message(
         code=place.upper(),
         name=name,
         longest=longest,
-        stored=words("class.stored", days=days),
+        stored=_stored(words, days, class_days, today),
         privacy=privacy,
         away=away[0],
         asked=away[1],

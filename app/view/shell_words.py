@@ -39,6 +39,7 @@ SHELL = (
     *("class.title", "class.join", "class.leave", "class.code", "class.code_hint"),
     *("class.nickname", "class.nickname_hint", "class.what_stored", "class.privacy"),
     *("class.then", "class.gone", "class.elsewhere", "class.ask_place"),
+    *("class.forget_me", "class.forget_me_sure"),
     *("class.teacher", "class.key", "class.key_hint", "class.teach"),
     *("design.files", "design.size", "design.size_hint", "design.radius", "design.radius_hint"),
     *("design.open", "design.open_hint", "design.upload", "design.reading", "design.lines"),

@@ -267,6 +267,19 @@ class-stored = Dein Labor speichert deine Vorhersagen und gezeichneten Kurven, d
         [one] wenn es einen Tag lang nicht benutzt wurde
        *[other] wenn es { $days } Tage lang nicht benutzt wurde
     }. Deine Lehrkraft kann alles sofort löschen.
+class-kept_until = Die Klasse selbst mit ihren Spitznamen wird { $days ->
+        [one] einen Tag
+       *[other] { $days } Tage
+    } nach der letzten Änderung gelöscht: wenn sie ab heute niemand mehr benutzt, am { $date }.
+class-date = %d.%m.%Y
+class-keep_for = Die Klasse nach ihrer letzten Änderung löschen
+class-days =
+    { $days ->
+        [one] nach einem Tag
+       *[other] nach { $days } Tagen
+    }
+class-forget_me = Alles löschen, was von mir gespeichert ist
+class-forget_me_sure = Dein Labor mit deinen Vorhersagen, gezeichneten Kurven, Antworten und Aufgaben und deinen Platz in der Klasse löschen? Das lässt sich nicht rückgängig machen. Diese Seite beginnt mit einem neuen Labor.
 class-privacy = Datenschutzerklärung
 class-join = Der Klasse beitreten
 class-leave = Die Klasse verlassen

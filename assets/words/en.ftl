@@ -269,6 +269,19 @@ class-stored = Your lab stores your predictions and drawn curves, your answers, 
         [one] after a day without use
        *[other] after { $days } days without use
     }. Your teacher can delete it all at once.
+class-kept_until = The class itself, with its nicknames, is deleted { $days ->
+        [one] a day
+       *[other] { $days } days
+    } after its last change: if nobody uses it after today, on { $date }.
+class-date = %Y-%m-%d
+class-keep_for = Delete the class after its last change
+class-days =
+    { $days ->
+        [one] after a day
+       *[other] after { $days } days
+    }
+class-forget_me = Delete everything that is stored of me
+class-forget_me_sure = Delete your lab with your predictions, drawn curves, answers and tasks, and your place in the class? It cannot be undone. This page starts again with a new lab.
 class-privacy = Privacy notice
 class-join = Join the class
 class-leave = Leave the class

@@ -130,6 +130,8 @@ ASKED: dict[str, dict[str, Any]] = {
     "compare_laws": {"laws": ["path_following"], "obstruction": "brake"},
     "join": {"code": "234567", "name": "Ada"},
     "leave": {},
+    "ask_place": {},
+    "forget_me": {},
     "teach": {"key": "k7mf2xqa9tzr"},
     "lead": {"do": "freeze", "member": 1},
 }

@@ -204,6 +204,21 @@ def test_who_comes_with_another_browser_gets_the_own_place_back_from_the_teacher
     tabs.students[0] = tab
 
 
+def test_a_student_deletes_everything_of_their_own_from_their_browser(tabs: Class) -> None:
+    student, room = tabs.students[1], tabs.room
+    code = next(code for code, each in room.members().items() if each.name == NAMES[1])
+    student.page.get_by_role("button", name=f"{NAMES[1]} · ").click()
+    student.page.get_by_role("button", name="Delete everything that is stored of me").click()
+    sure = student.page.get_by_role("dialog", name="Delete everything that is stored of me")
+    sure.get_by_role("button", name="Yes").click()
+    wait_for(lambda: code not in room.members())
+    wait_for(lambda: student.server.registry.find(code) is None)
+    wait_for(
+        lambda: student.page.evaluate("onpathLab.connected && onpathLab.seat.place") == "guest"
+    )
+    assert [each.name for each in room.members().values()] == [NAMES[0]]
+
+
 PROJECTORS = [(1280, 800), (1366, 768), (1920, 1080)]
 SHARE = 0.55  # of a projector's width that the robots have at least
 STAGE = """() => [...document.querySelectorAll("canvas[data-engine]")]

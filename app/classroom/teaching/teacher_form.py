@@ -30,6 +30,8 @@ from onpath.lessons.words import Words
 
 PREFIX = "class."
 """Begins the names of all fields of the teacher's page."""
+DAYS = (1, 2, 7, 14, 30, 90)
+"""For how many days a teacher may have a class kept, up to what the server allows."""
 NO_CLASS = FormMessage(place="class", groups=())
 
 
@@ -205,6 +207,7 @@ class TeacherForm:
         words = self._words
         fields = [
             _note("record_text", words("class.record_text")),
+            *self._of_days(),
             _button("record", words("class.export")),
             _button("end", words("class.end"), asks=words("class.end_sure")),
             _button(
@@ -212,6 +215,14 @@ class TeacherForm:
             ),
         ]
         return _group("record", words("class.record"), fields)
+
+    def _of_days(self) -> Iterator[FormField]:
+        """For how long the class is kept, if it is stored."""
+        words, most = self._words, self._teaching.classroom.most_days
+        offered = sorted({each for each in DAYS if each < most} | {most})
+        if most:
+            options = {words("class.days", days=days): days for days in offered}
+            yield _choice("days", words("class.keep_for"), options)
 
     # Values.
 
@@ -246,6 +257,7 @@ class TeacherForm:
         yield "standing", self._standing()
         yield "setup", chosen.setup
         yield "pair", chosen.pair
+        yield "days", classroom.days
         gains = [each.gains for each in members]
         yield "gains", gains_view(PAIRS[chosen.pair], gains, words, large)
         yield "code_again", code

@@ -61,6 +61,7 @@ class TeacherOrders:
             "follow": self._follow,
             "step": self._choose_step,
             "pair": self._choose_gains,
+            "days": self._keep_for,
             "pace_first": partial(self._choose_border, "first"),
             "pace_last": partial(self._choose_border, "last"),
         }
@@ -193,6 +194,10 @@ class TeacherOrders:
     def _choose_gains(self, pair: float) -> None:
         if int(pair) in range(len(PAIRS)):
             self._chosen.pair = int(pair)
+
+    def _keep_for(self, days: float) -> None:
+        if int(days) in range(1, self._class.most_days + 1):
+            self._class.keep_for(int(days))
 
     def _choose_pace(self, lesson: str) -> None:
         if self._course.has(lesson):

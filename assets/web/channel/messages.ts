@@ -278,6 +278,11 @@ export interface AskPlace {
     is: "ask_place"
 }
 
+/** Delete the lab with everything that is stored of the student, and leave the class. */
+export interface ForgetMe {
+    is: "forget_me"
+}
+
 /** Open the teacher's page with the teacher's key.
  *
  * Answered by `SeatAnswer`, unless the page becomes the teacher's. */
@@ -370,6 +375,7 @@ export type PageMessage =
     | JoinClass
     | LeaveClass
     | AskPlace
+    | ForgetMe
     | Teach
 
 /** The code of the page's lab, which its browser keeps before those of its other labs. */
@@ -887,7 +893,7 @@ export interface ClassMessage {
 export interface SeatAnswer {
     is: "seat"
     /** the request. */
-    of: "ask_place" | "join" | "leave" | "teach"
+    of: "ask_place" | "forget_me" | "join" | "leave" | "teach"
     /** it was refused: a sentence in the page's language; else empty. */
     why: string
     /** where the page of the class is, if it is another one; else empty. */

@@ -158,7 +158,7 @@ export class Shell {
     private takeSeat(name: "class" | "teach", isGone = false): SheetDialog {
         const { engine, texts } = this
         const send = (message: PageMessage) => {
-            this.leaves = message.is === "leave"
+            this.leaves = message.is === "leave" || message.is === "forget_me"
             engine.send(message)
         }
         const seat = (this.seat = new ClassSheet(texts, name === "teach", send, () => (this.seat = null)))

@@ -5,6 +5,7 @@ import type { ClassMessage, PageMessage, SeatAnswer } from "../channel/messages"
 import { made, refuse, tell } from "../core/dom"
 import { draftOf, keepDraft } from "../core/drafts"
 import { phrase, type Texts } from "../core/words"
+import { ask as confirm } from "./question"
 import { pressed, SheetDialog } from "./sheet"
 
 const DRAFT = "nickname"
@@ -91,7 +92,10 @@ export class ClassSheet {
             leave.disabled = true
             this.send({ is: "leave" })
         }))
-        return [made("p", "", before, made("b", "", made("bdi", "", seat.name)), after), made("p", "", phrase(texts, "class.then")), ...former, this.stored(seat), leave, this.refusal]
+        const forget = pressed("warning", phrase(texts, "class.forget_me"), () => {
+            confirm(texts, phrase(texts, "class.forget_me"), phrase(texts, "class.forget_me_sure"), () => { this.send({ is: "forget_me" }) })
+        })
+        return [made("p", "", before, made("b", "", made("bdi", "", seat.name)), after), made("p", "", phrase(texts, "class.then")), ...former, this.stored(seat), leave, forget, this.refusal]
     }
 
     /** Somebody of the same name is away, whose place one can have back. */

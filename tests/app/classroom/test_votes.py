@@ -340,6 +340,23 @@ def test_a_quiz_and_a_number_are_shown_as_predictions_are(course: Course) -> Non
     assert "4.2 mm ✓" in view and "−1 mm" in view and "−1 mm ✓" not in view
 
 
+def test_a_teacher_has_the_class_deleted_sooner_but_not_later_than_it_may_be_kept(
+    course: Course,
+) -> None:
+    lecture = Lecture(course)
+    room = lecture.room
+    assert room.days == 0  # it is not stored
+    room.most_days = 7
+    for wanted, days in ((2.0, 2), (30.0, 2), (0.0, 2), (7.0, 7)):
+        lecture.orders.set("class.days", wanted)
+        assert room.days == days
+    room.keep_for(2)
+    room.restore(from_stored(to_stored(room.state, 0.0), lambda _: NOTHING_DONE, 0.0))
+    assert room.days == 2
+    room.most_days = 1  # the server was started with another bound
+    assert room.days == 1
+
+
 def test_who_is_set_aside_is_neither_counted_nor_lost_and_is_back_on_coming(
     course: Course,
 ) -> None:

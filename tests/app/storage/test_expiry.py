@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -86,6 +87,32 @@ def test_a_class_is_deleted_a_week_after_its_last_change(world: World) -> None:
     assert world.records.load("x", classes) is None
 
 
+@pytest.mark.parametrize(
+    ("state", "most", "kept"),
+    [
+        ({}, 30, 30),
+        ({"days": 2}, 30, 2),
+        ({"days": 60}, 30, 30),  # not longer than the server allows
+        ({"days": 0}, 5, 5),
+        ({"days": "x"}, 5, 5),
+    ],
+)
+def test_a_class_is_kept_as_long_as_its_teacher_wants_and_the_server_allows(
+    world: World, state: dict[str, Any], most: int, kept: int
+) -> None:
+    world.records.save("x", state, classes)
+    world.records.save("y", {}, classes)
+    retention = Retention(class_days=most)
+    expiry = Expiry(world.records, retention, tuple, lambda: world.now)
+    world.now += kept * DAY - 1
+    expiry.delete()
+    assert world.records.load("x", classes) == state
+    world.now += 2
+    expiry.delete()
+    assert world.records.load("x", classes) is None
+    assert (world.records.load("y", classes) is None) == (kept == most)
+
+
 def test_it_is_done_at_the_start_and_a_database_that_is_away_does_not_matter(world: World) -> None:
     world.save(*"abc")
     world.now += IN_USE
@@ -100,7 +127,7 @@ def test_it_is_done_at_the_start_and_a_database_that_is_away_does_not_matter(wor
     again.stop()
 
 
-@pytest.mark.parametrize(("days", "most"), [(0, 1), (1, 0), (-1, 1)])
-def test_a_retention_is_positive(days: int, most: int) -> None:
+@pytest.mark.parametrize("numbers", [(0, 1, 1), (1, 0, 1), (-1, 1, 1), (1, 1, 0)])
+def test_a_retention_is_positive(numbers: tuple[int, int, int]) -> None:
     with pytest.raises(ValueError, match="expected 1 or more"):
-        Retention(days, most)
+        Retention(*numbers)
