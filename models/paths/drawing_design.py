@@ -26,8 +26,8 @@ from onpath.models.paths.path_design import MOST_POINTS, REACH, PathDesign
 from onpath.models.paths.spline_curves import DEGREE, WINDOW, SplineCurve, grained, piece_basis
 from onpath.models.paths.spline_fit import compared, spline_through, steadied
 
-APART = 0.04  # [m], usual distance of handles along a drawing
-FEWEST = 6  # handles of a short drawing
+APART = 0.04  # [m], least usual distance of handles along a drawing
+FEWEST, USUAL = 6, 12  # handles of a short drawing and of a long one; more would hide it
 NARROWEST = 3  # pieces between a handle and the end of its bump
 
 
@@ -157,6 +157,6 @@ def _handles(curve: SplineCurve) -> Array:
     middle = (theta[1:] + theta[:-1]) / 2
     steps = np.linalg.norm(np.diff(curve.at(theta), axis=0), axis=1) * curve.draws(middle)
     s = np.concatenate([[0.0], np.cumsum(steps)])
-    count = int(np.clip(s[-1] / APART, FEWEST, MOST_POINTS))
+    count = int(np.clip(s[-1] / APART, FEWEST, USUAL))
     even: Array = np.linspace(0.0, float(s[-1]), count, endpoint=not curve.closed)
     return np.interp(even, s, theta)
