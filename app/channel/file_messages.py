@@ -79,12 +79,13 @@ class MakeFile(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", 
     """Make a file for a download; one at a time. Answered by `DownloadMessage`.
 
     Attributes:
-        file: a table of the last minute (CSV), a picture of its plots (PNG), a page with the scene
-            of its last seconds, or a page with the record of all lessons.
+        file: a table of the last minute (CSV), a picture of its plots or of the lines that the
+            robots have written (PNG), a page with the scene of its last seconds, or a page with the
+            record of all lessons.
         with_code: whether the record shows the lab's code, which then opens the lab.
     """
 
-    file: Literal["table", "picture", "film", "report"]
+    file: Literal["table", "picture", "lines", "film", "report"]
     with_code: bool = False
 
 

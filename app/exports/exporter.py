@@ -12,7 +12,7 @@ from typing import Any, Protocol
 from onpath.app.common.error_log import log_error
 from onpath.app.exports.comparison import outcomes_of
 from onpath.app.exports.export_process import ExportProcess, ExportStopped
-from onpath.app.exports.files import csv_file, film_file, picture_file, report_file
+from onpath.app.exports.files import csv_file, film_file, lines_file, picture_file, report_file
 from onpath.app.lab.lab import Lab
 from onpath.lessons.words import Words
 from onpath.models.studies.comparison import Outcome
@@ -58,6 +58,10 @@ class Exporter:
     def picture(self) -> None:
         """Request a picture of the plots."""
         self._ask("onpath.png", picture_file, in_words=True, names_path=True)
+
+    def lines(self) -> None:
+        """Request a picture of what the robots have written."""
+        self._ask("onpath-lines.png", lines_file, in_words=True)
 
     def recording(self) -> None:
         """Request a standalone page with the scene of the last seconds."""

@@ -66,6 +66,20 @@ def film_file(
     return record_scene(machine, segments, words) + plots.encode()  # browsers append it to the body
 
 
+def lines_file(robot: str, parameters: Parameters, history: HistoryCopy, language: str) -> bytes:
+    """The lines that the robots have written on the present path, as PNG.
+
+    Args:
+        robot: name in the catalogue.
+    """
+    from onpath.app.exports.written_lines import draw_written  # only figures need Matplotlib
+
+    machine, segments = ROBOTS[robot].make(parameters), history.segments()
+    curve = segments[-1].curve
+    begin = next((i for i in range(len(segments), 0, -1) if segments[i - 1].curve is not curve), 0)
+    return draw_written(replay(machine, segments[begin:]), machine.frame, curve, Words(language))
+
+
 def report_file(course: Course, progress: Progress, code: str, made: datetime) -> bytes:
     """The lesson report as a page."""
     from onpath.app.exports.report import report

@@ -179,6 +179,7 @@ class PageFiles:
                 make = {
                     "table": exporter.csv,
                     "picture": exporter.picture,
+                    "lines": exporter.lines,
                     "film": exporter.recording,
                 }
                 make[wanted.file]()

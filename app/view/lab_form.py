@@ -134,6 +134,7 @@ CONTROLS = {
         *("draw", "file", "undo", "redo", "add", "remove", "point", "point_z1", "point_z2"),
         *("least_rank", "show_zone"),
     ),
+    "sign": ("draw", "undo", "lines"),
     "gains": ("speed", "K1", "K2", "K3", "K4", "K5", "poles", "pole_plane"),
 }
 """Controls of a lesson's step that stand for several fields."""
@@ -280,6 +281,8 @@ def _step_form(
     words: Words,
 ) -> FormMessage:
     fields = _fields(lab, dict(marks), words)
+    lines = {"is": "make", "file": "lines", "with_code": False}
+    fields["lines"] = FormField(name="lines", kind="button", label=words("export.lines"), act=lines)
     named = [name for control in controls for name in CONTROLS.get(control, (control,))]
     shown = tuple(fields[name] for name in dict.fromkeys(named) if name in fields)
     if not shown:

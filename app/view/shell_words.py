@@ -45,7 +45,7 @@ SHELL = (
     *("design.open", "design.open_hint", "design.upload", "design.reading", "design.lines"),
     *("design.turn", "design.turn_hint", "design.part", "design.part_hint"),
     *("design.right", "design.right_hint", "design.up", "design.up_hint"),
-    *("export.title", "export.table", "export.picture", "export.film"),
+    *("export.title", "export.table", "export.picture", "export.lines", "export.film"),
     *("compare.title", "compare.text", "compare.laws", "compare.obstruction", "compare.run"),
     *("compare.law", "compare.distance", "compare.delay", "compare.force", "compare.put"),
     *("compare.put_left", "compare.put_right", "compare.on_left", "compare.on_right"),

@@ -790,7 +790,10 @@ past-undo_hint = Nimmt „Von hier aus weiter“ zurück und legt beiseite, was 
 export-title = Exportieren
 export-table = CSV, letzte 60 s
 export-picture = Bild der Verläufe
+export-lines = Bild beider Linien
 export-film = Aufnahme (HTML), letzte 10 s
+export-farthest = bis zu { $distance } mm neben der Bahn
+export-caught = Ein Ring: Hier hat die Bremse zugegriffen
 export-making = { $name } entsteht …
 export-busy = Eine Datei nach der anderen: Die zuletzt verlangte entsteht noch.
 export-ready = { $name } ist fertig.
@@ -1837,6 +1840,8 @@ site-control-laws = die Wahl des Gesetzes
 site-control-identify = die Identifikation
 site-why-identify = sie braucht Aufzeichnungen jeder Millisekunde und die Statistik der Schätzwerte
 site-control-wall = die Wand
+site-control-sign = das Unterschreiben mit den Robotern
+site-why-sign = auf der Seite kann man nicht schreiben
 site-control-path = die Wahl der Bahn
 
 ## Roboter aus Dateien

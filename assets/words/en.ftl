@@ -705,7 +705,10 @@ past-undo_hint = Reverses “Go on from here”, and sets aside what was done si
 export-title = Export
 export-table = CSV, last 60 s
 export-picture = Picture of the plots
+export-lines = Picture of both lines
 export-film = Recording (HTML), last 10 s
+export-farthest = up to { $distance } mm beside the path
+export-caught = A ring: here the brake caught it
 export-making = Making { $name } …
 export-busy = One file at a time: the last one you asked for is still being made.
 export-ready = { $name } is ready.
@@ -1420,6 +1423,8 @@ site-control-laws = the choice of the law
 site-control-identify = identification
 site-why-identify = it needs a record of every millisecond, and statistics of the estimates
 site-control-wall = the wall
+site-control-sign = signing with the robots
+site-why-sign = the page has no place to write on
 site-control-path = the choice of the path
 
 ## Robots from files

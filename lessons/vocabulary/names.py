@@ -10,7 +10,7 @@ from onpath.models.systems.parameter_specs import unknown_name
 
 CONTROLS = (
     *("hold", "path", "editor", "gains", "plots", "past", "robot", "laws", "flexible"),
-    *("identify", "show", "wall", "start"),
+    *("identify", "show", "wall", "start", "sign"),
 )
 DRAWINGS = ("labels", "tube", "grid", "rank", "errors", "mass")
 """What a scene can draw besides the robots."""

@@ -260,7 +260,7 @@ def guessing(length: int, ask: Callable[[str], dict[str, Any]]) -> Misuse:
     return lambda tab: guess(tab, length, ask)
 
 
-FILES = [{"is": "make", "file": file} for file in ("table", "picture", "report", "film")]
+FILES = [{"is": "make", "file": file} for file in ("table", "picture", "lines", "report", "film")]
 ROBOT_CHOICES = [{"do": "ChooseRobot", "name": name} for name in ROBOTS]
 ATTACKS: dict[str, Attack] = {
     "recordings": tabs(12, repeating({"is": "make", "file": "film"})),  # D1

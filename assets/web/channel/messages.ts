@@ -193,9 +193,9 @@ export interface DropFile {
 /** Make a file for a download; one at a time. Answered by `DownloadMessage`. */
 export interface MakeFile {
     is: "make"
-    /** a table of the last minute (CSV), a picture of its plots (PNG), a page with the scene of its last seconds, or a page
-     * with the record of all lessons. */
-    file: "film" | "picture" | "report" | "table"
+    /** a table of the last minute (CSV), a picture of its plots or of the lines that the robots have written (PNG), a page with
+     * the scene of its last seconds, or a page with the record of all lessons. */
+    file: "film" | "lines" | "picture" | "report" | "table"
     /** whether the record shows the lab's code, which then opens the lab. */
     with_code?: boolean
 }

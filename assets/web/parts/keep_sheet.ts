@@ -5,7 +5,7 @@ import { made, refuse, switchInput, tell } from "../core/dom"
 import { phrase, type Texts } from "../core/words"
 import { pressed, SheetDialog } from "./sheet"
 
-const FILES: Record<MakeFile["file"], string> = { table: "export.table", picture: "export.picture", film: "export.film", report: "keep.report" }
+const FILES: Record<MakeFile["file"], string> = { table: "export.table", picture: "export.picture", lines: "export.lines", film: "export.film", report: "keep.report" }
 
 type Send = (message: Command | PageMessage) => void
 
@@ -24,7 +24,7 @@ export class Keep {
                 sheet.close()
                 send({ do: "UseShared", text })
             }))
-        const files = made("section", "", made("h3", "", phrase(texts, "export.title")), made("div", "row", ...(["table", "picture", "film"] as const).map(file => this.file(file))))
+        const files = made("section", "", made("h3", "", phrase(texts, "export.title")), made("div", "row", ...(["table", "picture", "lines", "film"] as const).map(file => this.file(file))))
         const withCode = switchInput()
         const record = made("section", "", made("h3", "", phrase(texts, "keep.record")), this.file("report", () => withCode.checked))
         sheet.body.append(sharing, files, record)
