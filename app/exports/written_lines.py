@@ -43,7 +43,7 @@ def written_figure(runs: Runs, frame: Frame, curve: Curve, words: Words) -> Figu
     """
     span = np.ptp(curve.at(curve.sample()), axis=0)
     height = WIDTH * float(np.clip(span[1] / span[0], 0.3, 1.2)) if span[0] > 0 else WIDTH
-    figure = Figure(figsize=(WIDTH * len(runs), height + 1.0), layout="constrained")
+    figure = Figure(figsize=(WIDTH * len(runs), height + 0.8), layout="constrained")
     row = figure.subplots(1, len(runs), sharex=True, sharey=True, squeeze=False)[0]
     titles = side_titles({side: tuple(p.law for p in parts) for side, parts in runs.items()}, words)
     theta = curve.sample(FINE * curve.grid)
@@ -52,13 +52,9 @@ def written_figure(runs: Runs, frame: Frame, curve: Curve, words: Words) -> Figu
     wanted = 1e3 * _pen_down(curve, theta, curve.at(theta)[:, :2])
     for axis, (side, parts) in zip(row, runs.items(), strict=True):
         axis.plot(*wanted.T, color="0.8", linewidth=5, solid_capstyle="round")
-        farthest = 0.0
         for run in parts:
-            farthest = max(farthest, _write(axis, run, frame, curve, OF_SIDE[side].hex))
+            _write(axis, run, frame, curve, OF_SIDE[side].hex)
         axis.set_title(titles[side], fontsize=15, color=OF_SIDE[side].hex)
-        axis.set_xlabel(
-            words("export.farthest", distance=words.number(1e3 * farthest, 2)), fontsize=11
-        )
         axis.set_aspect("equal")
         axis.set_xticks([])
         axis.set_yticks([])
@@ -68,18 +64,17 @@ def written_figure(runs: Runs, frame: Frame, curve: Curve, words: Words) -> Figu
     return figure
 
 
-def _write(axis: Axes, run: Trajectory, frame: Frame, curve: Curve, colour: str) -> float:
-    """Draw one run; return its largest distance from the path, [m]."""
+def _write(axis: Axes, run: Trajectory, frame: Frame, curve: Curve, colour: str) -> None:
+    """Draw one run."""
     near = np.flatnonzero(run.distance < REACHED)
     if not len(near):
-        return 0.0
+        return
     since = slice(int(near[0]), None)
     line = 1e3 * frame.planar(run.fields["y"])
     written = _pen_down(curve, run.fields["theta"][since, 0], line[since])
     axis.plot(*written.T, color=colour, linewidth=1.8)
     caught = np.searchsorted(run.t, [begin for begin, _ in held_times(run)])
     axis.plot(*line[caught].T, "o", markersize=11, markerfacecolor="none", color=colour)
-    return float(run.distance[since].max())
 
 
 def _pen_down(curve: Curve, theta: Array, points: Array) -> Array:

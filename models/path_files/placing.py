@@ -107,6 +107,8 @@ def curve_of(strokes: Sequence[Stroke], placing: Placing) -> SplineCurve:
     """The path of placed lines, with its deviation from the straight lines between their points.
 
     A single line is closed unless it is known to be open; of several, those known to be closed.
+    Unless the placing says that it is open, a drawing is repeated, with the pen raised on the way
+    back.
 
     Raises:
         CodedError: the lines are too short, or have too few points.
@@ -123,7 +125,7 @@ def curve_of(strokes: Sequence[Stroke], placing: Placing) -> SplineCurve:
         for each, some in ((points, given), (line, lines)):
             some.append(np.vstack([each, each[:1]]) if closed else each)
     closed = single and strokes[0].closed is not False
-    return compared(spline_through(lines, closed), given)
+    return compared(spline_through(lines, closed, repeated=placing.closed is None), given)
 
 
 def rounded(points: Array, closed: bool, radius: float) -> Array:

@@ -31,7 +31,8 @@ from onpath.models.path_files.stroke import UNITS, LineDrawing, Stroke, text_of
 from onpath.models.path_files.svg import strokes_of_svg
 from onpath.models.path_files.table import strokes_of_table
 from onpath.models.paths.curve_fit import deviation_remark, distinct
-from onpath.models.paths.curves import PERIOD, Curve
+from onpath.models.paths.curves import Curve
+from onpath.models.paths.spline_fit import raised_share
 from onpath.models.studies.path_text import LONGEST_TEXT, curve_from_text, is_described
 from onpath.models.studies.table_file import encoding_of
 from onpath.models.systems.parameter_specs import unknown_name
@@ -159,8 +160,7 @@ def _path(strokes: Sequence[Stroke], placing: Placing, remarks: list[Message]) -
     """The path of lines, with the remarks on them and some more."""
     curve = curve_of(placed(strokes, placing), placing)
     if curve.raised:
-        time = sum(end - begin for begin, end in curve.raised) / PERIOD
-        count, share = len(curve.raised), f"{100 * time:.0f}"
+        count, share = len(curve.raised), f"{100 * raised_share(curve):.0f}"
         remarks.append(Message("say.raised", {"count": count, "share": share}))
     if placing.corners == ROUND:
         radius = f"{1e3 * least_radius(curve):.1f}"

@@ -115,7 +115,8 @@ def drawn(stroke: Array) -> PathDesign:
     """A design from a freehand stroke.
 
     The curve is closed if the ends of the stroke are nearer to each other than a quarter of its
-    length.
+    size, the longer side of the box around it: a word is long, and yet not closed. Else it is drawn
+    again and again, with the pen raised on the way back; see `spline_through`.
 
     Args:
         stroke: shape (n, 2), [m]; clipped to ±REACH.
@@ -127,10 +128,10 @@ def drawn(stroke: Array) -> PathDesign:
     if stroke.ndim != 2 or not len(stroke) or not np.all(np.isfinite(stroke)):
         raise CodedError("error.stroke_not_finite")
     stroke = np.clip(stroke, -REACH, REACH)
-    length = float(np.linalg.norm(np.diff(stroke, axis=0), axis=1).sum())
-    closed = float(np.linalg.norm(stroke[0] - stroke[-1])) < 0.25 * length
+    size = float(np.ptp(stroke, axis=0).max())
+    closed = float(np.linalg.norm(stroke[0] - stroke[-1])) < 0.25 * size
     line = distinct(stroke, least=3 if closed else 2)
-    curve = spline_through([steadied(line, closed)], closed)
+    curve = spline_through([steadied(line, closed)], closed, repeated=True)
     return from_curve(compared(curve, [np.vstack([line, line[:1]]) if closed else line]))
 
 

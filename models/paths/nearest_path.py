@@ -102,7 +102,8 @@ def _nearest_drawing(reach: Callable[[Array], Array], curve: SplineCurve) -> Spl
             low, high = (low, middle) if is_within else (middle, high)
         lines = _drawn_lines(curve)
         moved = [line + high * (growth * line + move) for line in lines]
-        found = spline_through(moved, curve.closed)
+        returns = curve.closed and bool(curve.raised)
+        found = spline_through(moved, curve.closed and not returns, repeated=returns)
         if not curve_faults(reach, found):
             far = curve.deviation + compared(found, lines).deviation
             return replace(found, deviation=far, given=curve.given)
@@ -118,6 +119,7 @@ def _drawn_lines(curve: SplineCurve) -> list[Array]:
     return [
         curve.at(np.linspace(begin, end, max(2, round(count * (end - begin) / PERIOD))))
         for begin, end in zip(ends[::2], ends[1::2], strict=True)
+        if end > begin  # after the way back there is no stroke
     ]
 
 

@@ -88,10 +88,7 @@ class SplineCurve(Curve):
     @override
     def all_orders(self, theta: Array) -> list[Array]:
         theta = np.asarray(theta, dtype=float)
-        if self.closed:
-            inner = theta - PERIOD * np.floor(theta / PERIOD + 0.5)
-        else:
-            inner = np.clip(theta, -np.pi, np.pi)
+        inner = self._inner(theta)
         per_radian = self.pieces / PERIOD
         place = (inner + np.pi) * per_radian
         piece = np.clip(np.nan_to_num(np.floor(place)), 0, self.pieces - 1).astype(int)
@@ -106,10 +103,17 @@ class SplineCurve(Curve):
 
     def draws(self, theta: Array) -> NDArray[np.bool_]:
         """Whether the pen is down at θ, of the same shape."""
+        inner = self._inner(theta)
         down = np.ones(np.shape(theta), dtype=bool)
         for begin, end in self.raised:
-            down &= (theta <= begin) | (theta >= end)
+            down &= (inner <= begin) | (inner >= end)
         return down
+
+    def _inner(self, theta: Array) -> Array:
+        """The place in [-π, π] at which the pieces are to be evaluated for θ."""
+        if self.closed:
+            return theta - PERIOD * np.floor(theta / PERIOD + 0.5)
+        return np.clip(theta, -np.pi, np.pi)
 
     @override
     def table(self) -> Array:

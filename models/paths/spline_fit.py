@@ -49,6 +49,7 @@ STIFFNESS = 1e-7  # w, for each point of a piece
 TREMOR = 1.5e-3  # [m], width of the smoothing of a line drawn by hand
 DECIMALS = 4  # of the duration, [s], and of the ends of links, [rad]
 LINK_RADIUS = 2e-3  # [m], least one of a link's arcs
+MOST_RAISED = 0.3  # share of the time that the pen may be up in a drawing that is repeated
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -66,7 +67,9 @@ class Line:
     closed: bool
 
 
-def spline_through(strokes: Sequence[Array], closed: bool = False) -> SplineCurve:
+def spline_through(
+    strokes: Sequence[Array], closed: bool = False, repeated: bool = False
+) -> SplineCurve:
     """The path along strokes in their order; between them the pen is raised.
 
     It is rounded as little as is needed for bends of `LEAST_RADIUS`. Its control points are
@@ -75,6 +78,9 @@ def spline_through(strokes: Sequence[Array], closed: bool = False) -> SplineCurv
     Args:
         strokes: each of shape (n, 2), [m].
         closed: whether a single stroke is joined to its beginning.
+        repeated: whether a drawing that is not closed is drawn again and again: at its end the pen
+            is raised and goes back to the beginning. Not if the pen would then be up for more than
+            `MOST_RAISED` of the time, as after a straight line.
 
     Raises:
         ValueError: points of a wrong shape or not finite, fewer than two of a stroke that are
@@ -82,11 +88,26 @@ def spline_through(strokes: Sequence[Array], closed: bool = False) -> SplineCurv
     """
     closed = closed and len(strokes) == 1
     lines = _cleaned(strokes, closed)
+    if repeated and not closed:
+        found = _through(lines, closed, returns=True)
+        if raised_share(found) <= MOST_RAISED:
+            return found
+    return _through(lines, closed)
+
+
+def raised_share(curve: SplineCurve) -> float:
+    """The share of the time in which the pen is up."""
+    return sum(end - begin for begin, end in curve.raised) / PERIOD
+
+
+def _through(lines: list[Array], closed: bool, returns: bool = False) -> SplineCurve:
+    """The path along lines without points that coincide; see `spline_through`."""
     size = float(np.ptp(np.vstack(lines), axis=0).max())
     sharpest, best = np.inf, None
     for width, factor in ROUNDINGS:
         cap = factor * float(np.clip(0.008 * size, *CAP))
-        line = _joined([_rounded(each, closed, width, cap) for each in lines], closed, size)
+        smooth = [_rounded(each, closed, width, cap) for each in lines]
+        line = _joined(smooth, closed, returns, size)
         found = _fitted(line, CLOSE * size)
         bend = _sharpest(found)
         if bend < sharpest:
@@ -223,14 +244,18 @@ def _cusps(cosine: Array, outward: Array, reach: int) -> list[int]:
     return found
 
 
-def _joined(strokes: list[Array], closed: bool, size: float) -> Line:
-    """Strokes with links between them."""
+def _joined(strokes: list[Array], closed: bool, returns: bool, size: float) -> Line:
+    """Strokes with links between them, and one from the last to the first if it `returns`."""
     parts, pens = [strokes[0]], [np.ones(len(strokes[0]), dtype=bool)]
     for before, after in pairwise(strokes):
         link = _link(before, after, size)
         parts += [link, after]
         pens += [np.zeros(len(link), dtype=bool), np.ones(len(after), dtype=bool)]
-    return Line(np.vstack(parts), np.concatenate(pens), closed and len(strokes) == 1)
+    if returns:
+        link = _link(strokes[-1], strokes[0], size)
+        parts += [link, strokes[0][:1]]
+        pens += [np.zeros(len(link), dtype=bool), np.ones(1, dtype=bool)]
+    return Line(np.vstack(parts), np.concatenate(pens), closed or returns)
 
 
 def _link(before: Array, after: Array, size: float) -> Array:

@@ -18,8 +18,10 @@ from onpath.models.paths.spline_curves import SplineCurve
 from onpath.models.paths.spline_fit import (
     CAP,
     HASTE,
+    MOST_RAISED,
     QUICK,
     SWING,
+    raised_share,
     spline_through,
 )
 
@@ -92,12 +94,16 @@ def test_a_circle_is_passed_at_the_speed_of_the_usual_one() -> None:
 
 @pytest.mark.thorough
 @settings(max_examples=8)
-@given(st.integers(0, 2**32), st.integers(2, 6))
-def test_between_strokes_the_pen_is_up_and_else_it_draws_them(seed: int, count: int) -> None:
+@given(st.integers(0, 2**32), st.integers(1, 6), st.booleans())
+def test_between_strokes_the_pen_is_up_and_else_it_draws_them(
+    seed: int, count: int, repeated: bool
+) -> None:
     rng = np.random.default_rng(seed)
     strokes = [0.4 * polygon(seed + k) + rng.uniform(0, 0.1, 2) for k in range(count)]
-    curve = spline_through(strokes)
-    assert len(curve.raised) == count - 1
+    curve = spline_through(strokes, repeated=repeated)
+    assert len(curve.raised) == count - (not curve.closed)
+    if curve.closed:
+        assert repeated and raised_share(curve) <= MOST_RAISED
     theta = curve.sample(16 * curve.grid)
     down = curve.draws(theta)
     lines = [dense(stroke) for stroke in strokes]
@@ -106,6 +112,7 @@ def test_between_strokes_the_pen_is_up_and_else_it_draws_them(seed: int, count: 
     assert curve.deviation <= 0.02 * np.ptp(np.vstack(strokes), axis=0).max()
     assert speeds(curve, theta).max() < 1.1 * HASTE * QUICK
     edges = [-np.pi, *(edge for link in curve.raised for edge in link), np.pi]
+    assert not curve.closed or edges[-2] == pytest.approx(np.pi, abs=2e-4)
     for k, stroke in enumerate(strokes):
         ends = curve.at(np.array(edges[2 * k : 2 * k + 2]))
         assert np.linalg.norm(ends - stroke[[0, -1]], axis=-1).max() < 1.5e-3
