@@ -180,7 +180,7 @@ def _checked(pairs: Array) -> tuple[NDArray[np.bool_], NDArray[np.bool_], Array]
 
 def _in_batches(function: ca.Function, rows: Array) -> Array:
     """The results of a function of `BATCH` columns for any number of them, as rows."""
-    found = np.zeros((len(rows), function.size1_out(0)))
+    found = np.zeros((len(rows), function.size_out(0)[0]))
     for begin in range(0, len(rows), BATCH):
         part = rows[begin : begin + BATCH]
         padded = np.vstack([part, np.zeros((BATCH - len(part), part.shape[1]))])
