@@ -26,7 +26,7 @@ SAMPLES = 256  # points at equal arc length to which a series is fitted
 FINE = 16 * SAMPLES  # straight lines whose lengths are summed
 SHORTEST = 0.02  # [m], shortest total length of a path
 DENSE = 2048  # points that represent a curve or a line
-FINE, DENSEST = 32, 40_000  # points between two given ones, and all of them, of a smooth line
+BETWEEN, DENSEST = 32, 40_000  # points between two given ones, and all of them, of a smooth line
 APART = 1e-4  # [m], least distance of consecutive points
 FAR = 4e-3  # [m], deviation of a curve above which its user is told
 
@@ -150,7 +150,7 @@ def smooth_through(points: Array, closed: bool) -> Array:
         return points
     line = np.vstack([points, points[:1]]) if closed else points
     spline = _spline_through(line, "periodic" if closed else "natural")
-    each = max(1, min(FINE, DENSEST // len(points)))  # points of an interval
+    each = max(1, min(BETWEEN, DENSEST // len(points)))  # points of an interval
     at = np.interp(np.arange(each * (len(line) - 1) + 1) / each, np.arange(len(line)), spline.x)
     smooth = np.asarray(spline(at), dtype=np.float64)
     return smooth[:-1] if closed else smooth

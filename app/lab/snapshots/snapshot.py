@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from onpath.models.arrays import Array
 from onpath.models.paths.curves import PERIOD, Curve
 from onpath.models.paths.spline_curves import SplineCurve
 
@@ -196,7 +197,7 @@ class PathSnapshot:
         lines = np.stack([self.points[:-1], self.points[1:]], axis=1)
         if not isinstance(self.curve, SplineCurve):
             return lines
-        middle = (np.arange(len(lines)) + 0.5) * (PERIOD / len(lines)) - np.pi
+        middle: Array = (np.arange(len(lines)) + 0.5) * (PERIOD / len(lines)) - np.pi
         return lines[self.curve.draws(middle)]
 
 
