@@ -8,8 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from onpath.models.arrays import Array
-from onpath.models.paths.curves import PERIOD, Curve
+from onpath.models.paths.curves import Curve
 from onpath.models.paths.spline_curves import SplineCurve
 
 MARKER, TIP, END, FORCE = -4, -3, -2, -1  # indices of these in a robot's points
@@ -197,8 +196,8 @@ class PathSnapshot:
         lines = np.stack([self.points[:-1], self.points[1:]], axis=1)
         if not isinstance(self.curve, SplineCurve):
             return lines
-        middle: Array = (np.arange(len(lines)) + 0.5) * (PERIOD / len(lines)) - np.pi
-        return lines[self.curve.draws(middle)]
+        theta = np.linspace(-np.pi, np.pi, len(self.points))
+        return lines[self.curve.draws((theta[1:] + theta[:-1]) / 2)]
 
 
 @dataclass(frozen=True, slots=True)
