@@ -18,7 +18,7 @@ path, and nothing of the heading, η₁. With the pen kept on a motion y(t),
 Without drag (c = 0) this is φ'' = (a/d) sin(ψ - φ), where a and ψ are size and direction of y'': a
 pendulum that hangs in the direction of the acceleration. In front (d > 0) the nose hangs towards
 it, behind (d < 0) the tail, and nothing damps the swinging. Drag damps it by the rate c/m, and
-turns the direction from y'' to that of the thrust, y'' + (c/m) y'. At rest every heading is an
+turns the direction from y'' towards the velocity, to y'' + (c/m) y'. At rest every heading is an
 equilibrium: the exponents are 0 and -c/m. Illustrative values.
 
 Source: eqs. (1)-(3), (10), (11); Newton's equations.

@@ -86,7 +86,7 @@ def test_its_course_opens_from_the_folder_and_as_it_is_served(
         for start in (f"{address}/", (folder / "course" / "index.html").as_uri()):
             reader = SiteReader(browser, start)
             moves(reader.page)
-            assert reader.page.locator(".lessons li").count() == 11
+            assert reader.page.locator(".lessons li").count() == 12
             assert reader.complaints == []
             reader.context.close()
 

@@ -90,6 +90,7 @@ SOLUTIONS: dict[str, dict[str, tuple[Gesture, ...]]] = {
             *(Enter("K5", 1), Enter("Speed", -2), Wait(4)),
         ),
     },
+    "07b-where-the-theorem-decides": {"quiet-fans": (Enter("Drag", 1.5), Wait(16))},
     "08-challenge": {
         "own-path": (
             *(*TWO_BULGES, Enter("K1", 1600), Enter("K2", 80), Enter("K5", 5)),
