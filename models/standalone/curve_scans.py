@@ -20,7 +20,7 @@ from onpath.models.paths.spline_curves import WINDOW
 from onpath.models.systems.robots import Robot
 
 GRID = 128
-"""Points of a series from which the search for the closest one begins."""
+"""Points of a series from which the search for the closest one begins; a drawing has more."""
 REFINEMENTS = 4
 STEP = 0.1  # [rad], largest step of Newton's method on a series
 PIECES = 1.5  # the same on a drawing, whose strands may be close to each other
@@ -32,8 +32,8 @@ def curve_scans(robot: Robot, kind: Kind) -> dict[str, Scan]:
     curve: from (number, θ of number 0, step, last θ) -> rows (σ, σ', σ'', σ''') at the next θ
     nearest: `REFINEMENTS` + 1 steps from (θ, y) -> rows (distance from y to the path at θ, the
         point there), after each of which θ is nearer to the closest point
-    lowest: of a series: from (θ, y, number, squared distance) along rows of `GRID` points -> the
-        same state, with the θ of the nearest one
+    lowest: from (θ, y, number, squared distance) along rows of evenly spaced points, whose distance
+        in θ is the constant -> the same state, with the θ of the nearest one
     """
     state, pieces = ca.SX.sym("state", 4), ca.SX.sym("pieces")
     number, begin, step, last = ca.vertsplit(state)
@@ -46,8 +46,9 @@ def curve_scans(robot: Robot, kind: Kind) -> dict[str, Scan]:
     scans = {
         "curve": scan_on(kind, state, pieces, theta, every),
         "nearest": _nearest(robot, kind),
+        "lowest": _lowest(robot),
     }
-    return scans if kind.spline else scans | {"lowest": _lowest(robot, kind.closed)}
+    return scans
 
 
 def scan_on(
@@ -79,7 +80,7 @@ def scan_on(
 
 
 def beyond_function(robot: Robot, kind: Kind) -> ca.Function:
-    """(values at an end of an open series, sign of θ there, y) -> (distance, closest point) of the
+    """(values at an end of an open path, sign of θ there, y) -> (distance, closest point) of the
     half-line by which the curve continues."""
     lift, y = lift_of(robot, kind), ca.SX.sym("y", robot.system.p)
     values, sign = ca.SX.sym("values", kind.value_rows), ca.SX.sym("sign")
@@ -105,15 +106,14 @@ def _nearest(robot: Robot, kind: Kind) -> Scan:
     return scan_on(kind, state, pieces, theta, improved)
 
 
-def _lowest(robot: Robot, closed: bool) -> Scan:
-    p = robot.system.p
+def _lowest(robot: Robot) -> Scan:
+    p, span = robot.system.p, ca.SX.sym("span")
     state, point = ca.SX.sym("state", p + 3), ca.SX.sym("point", p)
-    theta, y, number, lowest = ca.vertsplit(state, [0, 1, p + 1, p + 2, p + 3])
+    theta, y, number, lowest = state[0], state[1 : p + 1], state[p + 1], state[p + 2]
     squared = ca.dot(point - y, point - y)
-    here = -np.pi + number * (PERIOD / (GRID if closed else GRID - 1))
-    theta = ca.if_else(squared < lowest, here, theta)
+    theta = ca.if_else(squared < lowest, number * span - np.pi, theta)
     after = ca.vertcat(theta, y, number + 1, ca.fmin(squared, lowest))
-    inputs = [state, ca.SX(0, 1), point]
+    inputs = [state, span, point]
     return Scan(ca.Function("step", inputs, [ca.densify(after), ca.SX(0, 1)]), p)
 
 

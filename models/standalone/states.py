@@ -12,14 +12,16 @@ from onpath.models.systems.robots import Robot
 
 
 def begin_function(robot: Robot, kind: Kind, kernel: Kernel) -> ca.Function:
-    """(values at θ = 0, first state on another path) -> the first state there, at rest; the values
+    """(θ, values there, first state on another path) -> the first state at θ, at rest; the values
     are those of the scan "curve"."""
-    values, (symbol, state) = ca.SX.sym("values", kind.value_rows), kernel.state.symbols("state")
+    begin, values = ca.SX.sym("begin"), ca.SX.sym("values", kind.value_rows)
+    symbol, state = kernel.state.symbols("state")
     q = robot.inverse(lift_of(robot, kind)(values[: kind.dimension], False))
-    theta = {"theta": ca.SX(0), "theta_ref": ca.SX(0)}
+    theta = {"theta": begin, "theta_ref": begin}
     seen = {"encoder": q[: robot.system.joints], "estimate": q}
     state = dict(state) | {"q": q} | seen | theta
-    return ca.Function("begin", [values, symbol], [ca.densify(kernel.state.join(state))])
+    first = ca.densify(kernel.state.join(state))
+    return ca.Function("begin", [begin, values, symbol], [first])
 
 
 def change_function(before: Kernel, after: Kernel, law: str) -> ca.Function:

@@ -44,14 +44,14 @@ class PythonSide:
         self.begin(curve)
 
     def begin(self, curve: Curve, edited: bool = False) -> None:
-        """Begin anew on a path; on an edited one at θ = 0, to the last bit."""
+        """Begin anew on a path; on an edited one at `Curve.begin`, to the last bit."""
         self.given, self.curve = curve, raised(curve, self.figure.parameters)
         self.kernel = self.figure.kernel(self.law, curve)
         self.loop = InterpretedLoop(self.kernel)
         self.state, self.push = self.figure.start(self.law, curve), FREE
         if edited:
             for name in ("theta", "theta_ref"):
-                self.state[self.kernel.state.slices[name]] = 0.0
+                self.state[self.kernel.state.slices[name]] = curve.begin
         self.row = np.zeros(self.kernel.log.size)
         self.y = self.robot.endpoint(self.kernel.state.unpack(self.state)["q"])
         self.grabbed = self.y

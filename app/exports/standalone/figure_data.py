@@ -153,7 +153,6 @@ FIT = {
 }
 _EDIT = {
     "row": ROW,
-    "grid": GRID,
     "refinements": REFINEMENTS,
     "turns": PER_PIECE,
     "grain": GRAIN,
@@ -279,7 +278,9 @@ def _path(figure: FigureChoice, name: str, curve: Curve) -> dict[str, Any]:
         "closed": curve.closed,
         "dimension": path.dimension,
         "doubts": [each.reason.code for each in ambiguities(path)],
+        "begin": path.begin,
         "pieces": drawn.pieces if drawn else 0,
+        "grid": path.grid if drawn else GRID,
         "raised": drawn.raised if drawn else (),
         "table": (drawn.points.ravel() if drawn else path.table()).tolist(),
         "checks": tuple(DRAWING_CHECKS if drawn else POINT_CHECKS),

@@ -51,7 +51,7 @@ def figure_module(figure: FigureChoice) -> bytes:
         shown = {**page_functions(figure.machine, kind), **_changes(figure, kernels)}
         shown |= measurements(figure.machine, figure.parameters)
         shown |= drawing_functions(figure, kind)
-        if not kind.closed and not kind.spline:
+        if not kind.closed:
             shown["beyond"] = beyond_function(figure.machine, kind)
         edited, steps = _editing(figure, kind, kernels)
         steps |= curve_scans(figure.machine, kind)

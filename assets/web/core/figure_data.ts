@@ -37,8 +37,12 @@ export interface PathData extends Texts<"label" | "kind"> {
     dimension: number
     doubts: string[]
     points: Point[]
+    /** θ at which a run begins. */
+    begin: number
     /** Of a drawing; 0 for a series. */
     pieces: number
+    /** Points from which the search for the closest one begins. */
+    grid: number
     /** From which θ to which the pen is up. */
     raised: [number, number][]
     /** What moves with a control point of a drawing: θ of it, and a weight for each point of the table. */
@@ -125,5 +129,5 @@ export interface FigureData extends Texts<"language" | "module"> {
     critical: { limit: number; notes: [string, string] }[]
     poles: PoleNumbers
     fit: FitNumbers
-    edit: Numbers<"row" | "grid" | "refinements" | "turns" | "grain" | "halvings" | "blend" | "nudge">
+    edit: Numbers<"row" | "refinements" | "turns" | "grain" | "halvings" | "blend" | "nudge">
 }

@@ -9,6 +9,7 @@ import type { Kernels } from "./kernels"
 const [LINE, OUTLINE] = [600, 240] // pieces of a line through points of a series, and of its outline
 const ORDERS = 4 // the curve and its derivatives
 const MOST_VALUES = 12 // of a curve in space
+const NEAR = 1.5 // pieces by which the closest point of a drawing may be away from where it was expected
 const BLOCK = 16 // segments of a drawing that have a box in common
 const WORK = 64 // numbers of work that functions share
 
@@ -49,8 +50,10 @@ export class Path {
     private readonly work = this.kernels.room(WORK)
     private readonly values = this.kernels.room(MOST_VALUES)
     private readonly state = this.kernels.room(ORDERS + this.figure.sizes.p)
-    /** Points of a series, from which the search for the closest one begins. */
-    private readonly grid = this.kernels.room(this.data.pieces ? 0 : this.edit.grid * this.figure.sizes.p)
+    /** Points from which the search for the closest one begins, and their distance in θ. */
+    private readonly grid = this.kernels.room(this.data.grid * this.figure.sizes.p)
+    private readonly span = this.kernels.put([2 * Math.PI / (this.data.closed ? this.data.grid : this.data.grid - 1)])
+    readonly begin = this.kernels.put([this.data.begin])
     private readonly rows = this.kernels.room(
         Math.max(
             this.edit.row * (this.data.samples + 1),
@@ -100,9 +103,12 @@ export class Path {
 
     /** Put the point at θ, in the space of the end-points, somewhere. */
     readonly at = (theta: number, into: number) => this.call("at", this.valuesAt(theta), into)
-    /** Put the distance of an end-point, and the closest point, somewhere: that on the strands of some θ, and of all of a series. */
-    nearest(y: number, strands: readonly number[], into: number): void {
-        const { kernels: { numbers }, state, work, data, figure: { sizes: { p } }, edit: { refinements, grid } } = this
+    /** Put the distance of an end-point, and the closest point, somewhere.
+     *
+     * On a series it is that of all points. On a drawing it is that near the point at which the robot's law aims or, if the
+     * robot is far from it, of all points. */
+    nearest(y: number, theta: number, aim: number, into: number): void {
+        const { kernels: { numbers }, state, work, data, span, figure: { sizes: { p } }, edit: { refinements } } = this
         const size = 1 + p
         numbers[into] = Infinity
         const take = (found: number) => {
@@ -112,14 +118,12 @@ export class Path {
             this.scan("nearest", state, this.table, this.rows, refinements + 1)
             take(this.rows + refinements * size)
         }
+        numbers[state] = data.pieces ? aim : theta
         numbers.copyWithin(state + 1, y, y + p)
-        for (const theta of strands) {
-            numbers[state] = theta
-            improve()
-        }
-        if (data.pieces) return
+        improve()
+        if (data.pieces && Math.abs(numbers[state]! - aim) < NEAR * 2 * Math.PI / data.pieces) return
         numbers.set([0, Infinity], state + size)
-        this.loop("lowest", state, state, this.grid, grid)
+        this.loop("lowest", state, span, this.grid, data.grid)
         improve()
         if (data.closed) return
         for (const end of [-1, 1]) {
@@ -221,12 +225,11 @@ export class Path {
 
     /** Compute what depends on the followed curve. */
     private refresh(): void {
-        const { kernels, work, data, grid, figure: { sizes: { p } }, edit } = this
+        const { kernels, work, data, grid, figure: { sizes: { p } } } = this
         this.known = {}
         this.outline = this.along(-Math.PI, Math.PI, this.intervals, place => this.seen(place)).flat()
-        if (data.pieces) return
         let into = grid
-        this.along(-Math.PI, Math.PI * (data.closed ? 1 - 2 / edit.grid : 1), edit.grid - 1, place => {
+        this.along(-Math.PI, Math.PI * (data.closed ? 1 - 2 / data.grid : 1), data.grid - 1, place => {
             this.call("at", place, work)
             kernels.copy(work, into, p)
             into += p

@@ -67,7 +67,7 @@ export class Side {
         kernels.numbers.set(path.data.states[this.law]!, state)
         kernels.numbers.set(path.data.settings, this.settings)
         this.configure(this.variant, this.numbers)
-        if (path.edited) this.call(`begin${this.law}`, path.valuesAt(0), state, state)
+        if (path.edited) this.call(`begin${this.law}`, path.begin, path.valuesAt(path.data.begin), state, state)
         this.tune()
         this.held = this.isPast = false
         this.pulledBy = this.beyond = null
@@ -257,11 +257,10 @@ export class Side {
     }
 
     private measure(): void {
-        const [theta, reference] = [this.field("theta"), this.field("theta_ref")].map(place => this.kernels.numbers[place]!) as [number, number]
-        const strands = this.does().aim === "theta_ref" ? [theta, reference] : [theta]
-        this.path.nearest(this.field("y"), strands, this.nearest)
+        const at = (name: "theta" | "theta_ref") => this.kernels.numbers[this.field(name)]!
+        this.path.nearest(this.field("y"), at("theta"), at(this.does().aim), this.nearest)
         this.distance = this.kernels.numbers[this.nearest]!
-        if (this.held && this.path.draws(theta)) this.most = Math.max(this.most, this.distance)
+        if (this.held && this.path.draws(at("theta"))) this.most = Math.max(this.most, this.distance)
     }
 
     private aimed(at: "theta" | "theta_ref"): Point {
