@@ -26,7 +26,7 @@ def test_when_the_hand_lets_go_the_pen_is_on_the_other_strand() -> None:
     points = 1e3 * np.array([curve.at(place) for place in np.linspace(0, 2 * np.pi, 4001)])
     end = motion.y[motion.during(2.998, 3.0)][-1]
     assert np.linalg.norm(points - end, axis=1).min() < 0.5
-    assert_stated(said(LESSON, "about # cm from the middle"), [np.linalg.norm(end) / 10])
+    assert_stated(said(LESSON, "about # cm from the middle"), [float(np.linalg.norm(end)) / 10])
     assert motion.largest(5.0, 6.0) < 0.5  # it is back, and goes on
     assert motion.place[-1] > motion.place[motion.during(2.4, 2.41)][0] + 2.0
 
