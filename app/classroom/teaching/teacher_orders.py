@@ -71,7 +71,7 @@ class TeacherOrders:
             "large": lambda on: post(Set("presenting", on)),
         }
         room = self._class
-        self._acts: Mapping[Order, Callable[[int], None]] = {
+        self._acts: Mapping[Order, Callable[[int], object]] = {
             "freeze": lambda _: room.freeze(True),
             "thaw": lambda _: room.freeze(False),
             "send_setup": self._send_setup,

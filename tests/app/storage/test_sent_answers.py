@@ -17,6 +17,7 @@ from onpath.app.lab.lab import Lab
 from onpath.app.storage.engine import NotKept
 from onpath.app.storage.lab_state import StateObserver, put_back
 from onpath.app.storage.records import Records, file_url
+from onpath.app.storage.schema import labs
 from onpath.app.storage.write_behind import WriteBehind
 from onpath.lessons.course import Course, read_course
 from onpath.models.systems.catalogue import FIVE_BAR
@@ -41,12 +42,12 @@ class Slow(Records):
         self.goes_on, self.away, self.saved = threading.Event(), 0, threading.Event()
 
     @override
-    def save(self, code: str, state: dict[str, Any], *table: Any) -> None:
+    def save(self, code: str, state: dict[str, Any], table: Any = labs) -> None:
         self.goes_on.wait(30.0)
         if self.away:
             self.away -= 1
             raise NotKept("error.database", reason="away")
-        super().save(code, state, *table)
+        super().save(code, state, table)
 
 
 @pytest.fixture(params=["sqlite", pytest.param("postgres", marks=needs_postgres)])
