@@ -22,6 +22,7 @@ from onpath.lessons.words import ENGLISH, Words
 from onpath.models.arrays import Array
 from onpath.models.control.sides import SIDES
 from onpath.models.paths.path_design import presets
+from onpath.models.paths.spline_fit import spline_through
 from tests.support.axe import RUN, SCRIPT, unnamed
 from tests.support.browser import THREE_FRAMES
 from tests.support.drawings import letters, star
@@ -413,7 +414,9 @@ def test_a_point_of_the_path_is_dragged_as_far_as_it_goes_and_there_it_is_red(
 
 def test_drawings_are_followed_to_the_last_bit_and_bent(browser: Browser, tmp_path: Path) -> None:
     """Chromium's sines are those of the C library."""
-    paths = {"letters": letters(), "star": star()}
+    turn = np.linspace(0, 2 * np.pi, 200)[:-1]
+    ring = spline_through([0.04 * np.column_stack([np.cos(turn), np.sin(turn)])], closed=True)
+    paths = {"letters": letters(), "star": star(), "ring": ring}
     figure = chosen("five_bar", LAWS, paths, NEWCOMER, choices=OTHERS)
     file, python = tmp_path / "drawings.html", PythonFigure(figure)
     file.write_text(figure_page(figure, ENGLISH), encoding="utf-8")
@@ -435,15 +438,17 @@ def test_drawings_are_followed_to_the_last_bit_and_bent(browser: Browser, tmp_pa
     opened.page.evaluate(THREE_FRAMES)
     lines = [(opacity, way) for _, opacity, _, way in opened.page.evaluate(STROKES)]
     assert sum(len(way) > 9 and 0 < opacity < 1 for opacity, way in lines) >= 2 * 2  # of each robot
-    before, (x, y) = opened.number(TABLE), spot(opened, 1)
+    opened.do(("choose", 2))
+    before, (x, y) = opened.number(TABLE), spot(opened, 2)
     mouse = opened.page.mouse
     mouse.move(x, y)
     mouse.down()
-    mouse.move(x, y - 400, steps=3)
-    opened.page.evaluate(THREE_FRAMES)
-    assert len(opened.number("onpath.simulation.followed.fault.marks")) > 0
-    mouse.up()
+    mouse.move(x + 4, y + 3)
     wait_for(lambda: opened.number(TABLE) != before, WAIT)
+    assert opened.number("onpath.simulation.followed.fault") is None
+    mouse.move(x, y - 400)
+    wait_for(lambda: opened.number("onpath.simulation.followed.fault?.marks.length > 0"), WAIT)
+    mouse.up()
     assert opened.complaints == []
     opened.page.close()
 
