@@ -43,6 +43,7 @@ FIELDS: dict[str, st.SearchStrategy[Any]] = {
     "int": WHOLE,
     "float": NUMBERS,
     "str": TEXTS,
+    "Annotated[str, msgspec.Meta(max_length=LONGEST_TEXT)]": TEXTS,
     "Any": st.none() | st.booleans() | WHOLE | NUMBERS | TEXTS,
     "bool | None": st.none() | st.booleans(),
     "int | None": st.none() | WHOLE,
