@@ -133,7 +133,8 @@ VALUES: dict[str, st.SearchStrategy[Any]] = {
 } | {name: st.integers(0, 2) for name in ("rate", "achieved", "messages", "height", "arrow")}
 VALUES |= {name: st.booleans() for name in ("undo", "presenting", "own", "drawn")}
 VALUES |= {
-    name: st.lists(st.text(max_size=1)) for name in ("titles", "names", "texts", "captions", "laws")
+    name: st.lists(st.text(max_size=1))
+    for name in ("titles", "names", "texts", "captions", "laws", "sent")
 }
 VALUES |= {name: st.lists(st.booleans()) for name in ("clocks", "stopped")}
 VALUES |= {

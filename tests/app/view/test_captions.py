@@ -122,5 +122,5 @@ def test_a_closed_path_has_no_end_at_which_a_robot_could_rest(robot: str) -> Non
     lab, captions = new_lab(), Captions(ENGLISH)
     do(lab, c.ChooseRobot(robot), c.Set("speed", 0.0))
     do(lab, c.Set("start_theta", 3.1415), c.Reset())
-    assert take_page_snapshot(lab, 1.0).path.closed
+    assert take_page_snapshot(lab, 1.0).path.curve.closed
     assert seen(lab, captions, 0.3) == {TRACKER: "", FOLLOWER: ""}
