@@ -121,7 +121,7 @@ export class Path {
         numbers[state] = data.pieces ? aim : theta
         numbers.copyWithin(state + 1, y, y + p)
         improve()
-        if (data.pieces && Math.abs(numbers[state]! - aim) < NEAR * 2 * Math.PI / data.pieces) return
+        if (data.pieces && Math.abs(numbers[state] - aim) < NEAR * 2 * Math.PI / data.pieces) return
         numbers.set([0, Infinity], state + size)
         this.loop("lowest", state, span, this.grid, data.grid)
         improve()
