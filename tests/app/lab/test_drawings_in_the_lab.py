@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -63,7 +65,7 @@ def test_nothing_is_compiled_for_another_drawing_a_drag_or_a_stroke(
     cache = lab.simulation._loop_cache
     before = cache._make
 
-    def make(key: object) -> object:
+    def make(key: Any) -> object:
         made.append(key)
         return before(key)
 

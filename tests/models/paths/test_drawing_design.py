@@ -44,9 +44,11 @@ def gaps(design: DrawingDesign, index: int) -> tuple[float, float]:
 @settings(max_examples=40, deadline=None)
 @given(SEEDS)
 def test_a_handle_follows_the_hand_and_bends_only_up_to_its_neighbours(seed: int) -> None:
-    rng, design = np.random.default_rng(seed), some_drawing(seed)
+    rng, drawing = np.random.default_rng(seed), some_drawing(seed)
     for _ in range(int(rng.integers(4))):
-        design = design.added(int(rng.integers(len(design.points))))
+        drawing = drawing.added(int(rng.integers(len(drawing.points))))
+    design = drawing
+    assert isinstance(design, DrawingDesign)
     index = int(rng.integers(len(design.points)))
     wanted = np.clip(design.points[index] + rng.normal(scale=0.01, size=2), -REACH, REACH)
     moved = design.moved(index, wanted)
