@@ -246,7 +246,7 @@ class ClientScene:
             self._scene.frame_camera(_top(height), path if self._on_path else None)
 
     def _callbacks(self, robot: Robot) -> SceneCallbacks:
-        post = self._post
+        post, choose_tip = self._post, self._choose_tip  # self would keep the scene alive
 
         def move(index: int, at: Array) -> None:
             post(c.MovePoint(index, plane_coordinates(robot, at), finished=False))
@@ -259,7 +259,7 @@ class ClientScene:
             on_point_selected=lambda index: post(c.SelectPoint(index)),
             on_wall_moved=lambda at: post(c.MoveWall(plane_coordinates(robot, at))),
             on_wall_turned=lambda end, at: post(c.SwingWall(end, plane_coordinates(robot, at))),
-            on_tip_chosen=lambda tip: self._choose_tip(robot.name, tip),
+            on_tip_chosen=lambda tip: choose_tip(robot.name, tip),
             on_joint_dragged=lambda joint, at: post(c.DragJoint(joint, robot.output_at(at))),
             on_start_moved=lambda at: post(c.MoveStart(plane_coordinates(robot, at))),
         )

@@ -158,12 +158,13 @@ class WriteBehind:
             self._wanted.wait()
             self._wanted.clear()
             self._hurry.clear()
-            self._write_all()
-            if not self._closing.is_set():
+            wrote = self._write_all()
+            if wrote and not self._closing.is_set():
                 self._hurry.wait(self._interval)
         self._write_all()
 
-    def _write_all(self) -> None:
+    def _write_all(self) -> bool:
+        """Write the pending states; return whether there were any."""
         with self._lock:
             codes = sorted(self._pending, key=lambda code: code not in self._hurried)
             self._hurried.clear()
@@ -177,6 +178,7 @@ class WriteBehind:
         if codes and failed != self.warning:
             log.warning("%s", f"not kept: {failed}" if failed else "kept again")
             self.warning = failed
+        return bool(codes)
 
     def _write_waiting(self, code: str) -> str:
         """Write the pending state of one lab, if any; see `_write`."""
