@@ -8,11 +8,14 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterator
+from concurrent.futures import Future, wait
+from dataclasses import dataclass
 from math import inf
 from time import thread_time
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
+from typing_extensions import override
 
 from onpath.app.lab.advance_together import Frame, advance_together
 from onpath.app.lab.breakdown import Breakdown
@@ -35,6 +38,7 @@ from onpath.models.systems.law_parameters import DISTANCE, LEVEL_SET
 
 MOST_COMMANDS = 500  # commands in the queue; further ones are dropped
 PATIENCE = 15  # frames of waiting after which a lab says that it waits
+BRIEFLY = 1e-3  # [s] that a frame waits for work in another thread
 
 
 class Command:
@@ -67,6 +71,21 @@ class Command:
         """The commands of which it consists; between two of them, other labs have their turn."""
         del lab
         yield self
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Await(Command):
+    """A part of a command that is done when another thread has done its work.
+
+    Attributes:
+        work: of the other thread.
+    """
+
+    work: Future[Any]
+
+    @override
+    def apply(self, lab: Lab) -> None:
+        wait([self.work], BRIEFLY)
 
 
 class Lab:
@@ -171,6 +190,8 @@ class Lab:
         while self.has_commands and not self.simulation.has_to_step and thread_time() < until:
             self._apply_next()
             applied += 1
+            if isinstance(self._part, Await) and until < inf:
+                break  # others have their turn meanwhile
         is_behind = self._part is not None or self.simulation.lacks_loops
         is_behind = is_behind or (self.has_commands and not applied)
         self._waiting = self._waiting + 1 if is_behind else 0

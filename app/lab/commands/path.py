@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +11,7 @@ from typing_extensions import override
 
 from onpath.app.lab.commands.checks import finite, point
 from onpath.app.lab.commands.time import StepOnce
-from onpath.app.lab.lab import Command, Lab
+from onpath.app.lab.lab import Await, Command, Lab
 from onpath.lessons.words import Words
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
@@ -22,6 +23,8 @@ from onpath.models.paths.path_design import PathDesign
 from onpath.models.systems.parameter_specs import unknown_name
 
 MOST_STROKE_POINTS = 5000
+_fits = ThreadPoolExecutor(1, "strokes")
+"""Fits the strokes of all labs, one at a time: a fit takes tenths of a second."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,11 +168,25 @@ class DrawPath(Command):
     stroke: Array
 
     @override
-    def apply(self, lab: Lab) -> None:
+    def parts(self, lab: Lab) -> Iterator[Command]:
         stroke = np.asarray(self.stroke, dtype=float)
         if stroke.ndim != 2 or stroke.shape[1] != 2 or len(stroke) > MOST_STROKE_POINTS:
             raise CodedError("error.stroke_without_points")
-        design = drawn(stroke)
+        fit = _fits.submit(drawn, stroke)
+        while not fit.done():
+            yield Await(fit)
+        yield FollowDesign(fit)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FollowDesign(Command):
+    """Follow a stroke that has been fitted; no page sends it."""
+
+    fit: Future[PathDesign]
+
+    @override
+    def apply(self, lab: Lab) -> None:
+        design = self.fit.result()
         _draw(lab, design, lab.words.sentence(deviation_of(design.curve)))
 
 

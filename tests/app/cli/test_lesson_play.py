@@ -122,8 +122,8 @@ def test_what_a_step_draws_and_where_it_starts_is_printed(tmp_path: Path, capsys
     ("arguments", "said"),
     [
         (["01-pat-or-timetable", "1"], "did you mean 01-path-or-timetable"),
-        (["1", "99"], "has steps 1 to 11"),
-        (["1", "0"], "has steps 1 to 11"),
+        (["1", "99"], "has steps 1 to 12"),
+        (["1", "0"], "has steps 1 to 12"),
         (["99", "1"], "unknown lesson '99'"),
     ],
 )

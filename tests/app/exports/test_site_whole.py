@@ -125,4 +125,8 @@ def test_few_steps_say_that_only_the_lab_can_do_them() -> None:
         for site in steps_of(name)
         if site.data["onlyLab"]
     ]
-    assert only == [("06-exact-cancellation", 8), ("06-exact-cancellation", 9)]
+    assert only == [
+        ("01-path-or-timetable", 12),
+        ("06-exact-cancellation", 8),
+        ("06-exact-cancellation", 9),
+    ]
