@@ -132,6 +132,7 @@ class Student:
             except Exception:
                 if time.monotonic() > end:
                     raise
+                self.close()  # what has been opened: its lab would be in use
                 time.sleep(0.2)
 
     # What comes
