@@ -31,8 +31,9 @@ NAME = np.stack([0.1 * T - 0.05 + 0.012 * np.sin(8 * np.pi * T), -0.02 * np.cos(
 def test_a_name_is_written_by_hand_and_twice_by_robots(
     server: LabServer, browser: Browser, hand: str, width: int, height: int
 ) -> None:
-    size = {"width": width, "height": height}
-    context = browser.new_context(viewport=size, has_touch=hand == "finger")
+    context = browser.new_context(
+        viewport={"width": width, "height": height}, has_touch=hand == "finger"
+    )
     tab = Tab(server, context)
     course = tab.lab.lessons.course
     tab.ask(c.TakeStep(TIMETABLE, len(course.lesson(TIMETABLE, "en").steps) - 1))
