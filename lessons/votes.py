@@ -30,7 +30,7 @@ class Vote:
         return (self.lesson, self.item, self.again) == (lesson, item, again)
 
     def is_open(self, now: float) -> bool:
-        """Whether an answer counts that is given now, [s]."""
+        """Whether an answer given now, [s], counts."""
         return self.closes is None or now <= self.closes
 
 

@@ -48,7 +48,7 @@ REFUSALS = {
 """Why steps are refused, with codes from 1 on; those of `Robot.reasons` follow. 0 is none."""
 _CODES = {name: number for number, name in enumerate(REFUSALS, 1)}
 OWN_SETTINGS = ("at_fault", "fastest")
-"""Settings that a loop has not: place in `AT_FAULT`, and largest rate of a joint, [rad/s]."""
+"""Settings that a loop lacks: place in `AT_FAULT`, and largest rate of a joint, [rad/s]."""
 HOLD, DAMP = AT_FAULT.index("hold"), AT_FAULT.index("damp")
 _READ = ("encoder", "encoder_rate")
 """Fields of the state that a tick without a measurement leaves as they are."""

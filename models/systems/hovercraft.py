@@ -62,7 +62,7 @@ class HovercraftParameters(Parameters):
     pen: str = choice(
         "front",
         tuple(PLACES),
-        "where on the hovercraft's axis the pen is that shall be on the path",
+        "where the pen sits on the hovercraft's axis",
         group="robot",
         label="Pen",
         compiles=True,
