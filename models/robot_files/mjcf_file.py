@@ -147,7 +147,8 @@ class _Model:
         model = self._model
         name, mass = model.body_names[body], factor * float(model.body_mass[body])
         inertial = here @ _place(model.body_ipos[body], model.body_iquat[body])
-        inertia = inertial.rotation @ np.diag(model.body_inertia[body]) @ inertial.rotation.T
+        stated = model.impossible.get(body, np.diag(model.body_inertia[body]))
+        inertia = inertial.rotation @ stated @ inertial.rotation.T
         if is_dummy(mass, inertia):
             return LinkMass(name, drawn=drawn)
         return LinkMass(

@@ -8,7 +8,7 @@ from __future__ import annotations
 import io
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from importlib import import_module
 from importlib.util import find_spec
@@ -19,6 +19,7 @@ from zipfile import BadZipFile
 import msgspec
 import numpy as np
 
+from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
 from onpath.models.robot_files.limited_process import SECONDS, ProcessEnded, answer_of, serve
 from onpath.models.robot_files.xml_elements import shown
@@ -39,6 +40,8 @@ FIELDS = (
 """The arrays of `mjModel` that are read."""
 
 
+LEAST_INERTIA = 1e-12  # [kg m²], below which MuJoCo may refuse a principal moment
+ROUNDING = 1e-9  # share of C by which A + B must exceed it, so that MuJoCo finds A + B ≥ C, too
 USUAL_DENSITY = 1000.0  # [kg/m³], of geoms in MuJoCo
 
 
@@ -56,7 +59,9 @@ def read_model(
 
     The names are in `body_names`, `joint_names`, `site_names` and `key_names`; "" for none. The
     numbers of bodies whose masses are from geoms, of none of which the file says how heavy it is,
-    are in `weighed`.
+    are in `weighed`. Inertias that the file states and no moving body can have, about the axes of
+    <inertial>, are in `impossible` by the numbers of their bodies, in place of what `body_inertia`
+    has for them.
 
     Args:
         text: an MJCF file.
@@ -83,7 +88,9 @@ def read_model(
         raise CodedError("robot_file.mujoco_ended", file=file) from None
     if told["refused"]:
         raise CodedError("robot_file.mjcf", file=file, reason=_one_line(told["refused"]))
-    model = SimpleNamespace(**arrays, **told["names"], weighed=told["weighed"])
+    impossible = {number: np.array(inertia) for number, inertia in told["impossible"]}
+    parts = {**told["names"], "weighed": told["weighed"], "impossible": impossible}
+    model = SimpleNamespace(**arrays, **parts)
     return model, tuple(map(_one_line, told["warnings"]))
 
 
@@ -102,22 +109,48 @@ def _answer(job: bytes) -> bytes:
 
 def _read(job: Reading) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
     warnings = list[str]()
+    told: dict[str, Any] = {"names": {}, "weighed": [], "impossible": []}
     try:
         mujoco: Any = import_module("mujoco")
         _close_files()
         mujoco.set_mju_user_warning(warnings.append)  # else they go to a file in the current folder
-        model = mujoco.MjModel.from_xml_string(job.text, job.files)
-        weighed = _weighed(mujoco.MjSpec.from_string(job.text))
+        spec = mujoco.MjSpec.from_string(job.text, assets=job.files)
+        told["weighed"] = _weighed(spec)
+        impossible = dict(_impossible(spec))
+        model = spec.compile()
     except Exception as error:
-        refused = str(error) or type(error).__name__
-        return {}, {"refused": refused, "warnings": [], "names": {}, "weighed": []}
-    names = {
+        return {}, {**told, "refused": str(error) or type(error).__name__, "warnings": []}
+    for number, inertia in impossible.items():
+        mass = float(spec.bodies[number].mass)
+        scale = float(model.body_mass[number]) / mass if mass else 1.0  # of settotalmass
+        told["impossible"].append((number, (scale * inertia).tolist()))
+    told["names"] = {
         f"{kind}_names": [getattr(model, kind)(i).name for i in range(getattr(model, count))]
         for kind, count in NAMED.items()
     }
     arrays = {name: np.array(getattr(model, name)) for name in FIELDS}
-    told = {"refused": "", "warnings": warnings, "names": names, "weighed": weighed}
-    return arrays, told
+    return arrays, {**told, "refused": "", "warnings": warnings}
+
+
+def _impossible(spec: Any) -> Iterator[tuple[int, Array]]:
+    """The inertias, (3, 3), that MuJoCo would refuse, by the numbers of their bodies.
+
+    MuJoCo gets another one for these bodies.
+    """
+    kind = spec.compiler.inertiafromgeom.name
+    if spec.compiler.balanceinertia or kind == "mjINERTIAFROMGEOM_TRUE":
+        return
+    for number, body in enumerate(spec.bodies):
+        if not body.explicitinertial:
+            continue
+        xx, yy, zz, xy, xz, yz = (float(each) for each in body.fullinertia)
+        inertia = np.diag([float(each) for each in body.inertia])
+        if not math.isnan(xx):
+            inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+        least, middle, most = np.linalg.eigvalsh(inertia)
+        if least < LEAST_INERTIA or least + middle < (1 + ROUNDING) * most:
+            body.inertia, body.fullinertia = [1, 1, 1], [math.nan, 0, 0, 0, 0, 0]
+            yield number, inertia
 
 
 def _weighed(spec: Any) -> list[int]:

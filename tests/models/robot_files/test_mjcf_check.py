@@ -164,9 +164,9 @@ def test_whatever_mujoco_does_is_one_clear_line(
     """A library in its place that does it when a model is read."""
     code, words = BEHAVIOURS[behaviour]
     (tmp_path / "mujoco.py").write_text(
-        "class MjModel:\n"
+        "class MjSpec:\n"
         "    @staticmethod\n"
-        "    def from_xml_string(*_):\n"
+        "    def from_string(*_, **__):\n"
         f"        {code}\n"
         "def set_mju_user_warning(_): pass\n"
     )

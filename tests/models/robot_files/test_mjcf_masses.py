@@ -114,6 +114,55 @@ def test_the_mass_of_a_dummy_is_that_of_what_is_drawn(tmp_path: Path) -> None:
     assert 0.9 * volume < bodies_of(robot)[1].mass / 1000 < volume  # a polyhedron in the capsule
 
 
+KEYS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+
+
+def urdf(inertia: list[float]) -> str:
+    """The arm of `arm(["a mass", "an inertial"])` with another inertia of its last link."""
+    links, before = '<link name="world"/>', "world"
+    for name, six in {"link0": [1.0, 1.0, 1.0], "link1": inertia}.items():
+        moments = " ".join(f'{key}="{value!r}"' for key, value in zip(KEYS, six, strict=False))
+        links += (
+            f'<link name="{name}"><inertial><origin xyz="0.01 0 0.1"/><mass value="0.4"/>'
+            f"<inertia {moments}/></inertial></link>"
+            f'<joint name="{name.replace("link", "joint")}" type="continuous">'
+            f'<parent link="{before}"/><child link="{name}"/><origin xyz="0 0 0.2"/>'
+            '<axis xyz="0 1 0"/></joint>'
+        )
+        before = name
+    return (
+        f'<robot name="arm">{links}<link name="tip"/><joint name="end" type="fixed">'
+        f'<parent link="{before}"/><child link="tip"/><origin xyz="0 0 0.2"/></joint></robot>'
+    )
+
+
+moments, products = (
+    st.lists(st.floats(least, 0.02), min_size=3, max_size=3) for least in (1e-4, -0.02)
+)
+
+
+@settings(max_examples=5, deadline=None)
+@given(st.one_of(moments, st.builds(list.__add__, moments, products)))
+def test_an_inertia_of_no_body_is_taken_as_in_a_urdf_file(
+    tmp_path_factory: pytest.TempPathFactory, inertia: list[float]
+) -> None:
+    folder = tmp_path_factory.mktemp("arm")
+    kind = "full" if len(inertia) == 6 else "diag"
+    said = f'{kind}inertia="{" ".join(map(repr, inertia))}"'
+    text = arm(["a mass", "an inertial"]).replace('diaginertia="0.01 0.012 0.008"', said)
+    file = folder / "arm.urdf"
+    file.write_text(urdf(inertia), "utf-8")
+    robot = read(folder, text)
+    peer = read_robot(file, Options(tip="tip", pose={"joint0": 0.6, "joint1": 1.2}))
+    one, other = bodies_of(robot)[1], bodies_of(peer)[1]
+    assert np.allclose(one.inertia, other.inertia, rtol=1e-9, atol=1e-12)
+    repaired, repaired_there = (
+        [str(guess.message) for guess in each.guesses if guess.kind == "inertia"]
+        for each in (robot, peer)
+    )
+    assert repaired == repaired_there
+
+
 def test_another_mesh_is_another_robot(tmp_path: Path) -> None:
     """The same file, whose mesh is another one of the same size."""
     mesh = '<geom type="mesh" mesh="link"/>'
