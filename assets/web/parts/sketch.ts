@@ -18,9 +18,9 @@ export class Sketch {
     get element(): HTMLCanvasElement { return this.sheet.canvas }
 
     draw(): void {
-        const { engine, sheet } = this
-        this.element.hidden = engine.lab!.drawn
-        if (engine.lab!.drawn || !this.stale) return
+        const { engine, sheet, element } = this, { drawn } = engine.lab!
+        if (element.hidden !== drawn) element.hidden = drawn
+        if (drawn || !this.stale) return
         this.stale = false
         const ink = sheet.cleared()
         if (!ink) return
