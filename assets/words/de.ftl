@@ -1882,6 +1882,7 @@ robot_file-pose = { $joint }: { $value } ist keine Stellung
 robot_file-pose_outside = { $joint }: { $value } liegt nicht zwischen den Grenzen { $low } und { $high }
 robot_file-armature = ein Läufer-Trägheitsmoment von { $value } kg m²: erwartet wird 0 bis { $most }
 robot_file-no_pose = die Spitze lässt sich aus keiner Stellung in alle Richtungen bewegen: Ihre Gelenke drehen sie um einen Punkt oder um parallele Achsen. Nennen Sie ein anderes Glied mit --tip (in Python tip=…)
+robot_file-no_pose_package = die Spitze lässt sich aus keiner Stellung in alle Richtungen bewegen: Ihre Gelenke drehen sie um einen Punkt oder um parallele Achsen. Vielleicht liegt sie am äußersten Ende ihres Glieds, aber für das Netz, das es zeigen würde, fehlt ein Paket: { $lines }. Oder nennen Sie ein anderes Glied mit --tip (in Python tip=…)
 robot_file-singular = aus dieser Stellung kann sich die Spitze nicht in alle Richtungen bewegen: Geben Sie eine andere mit --pose (in Python pose=…) an
 robot_file-circle = Kreise bis { $circle } mm sind möglich, Bahnen brauchen aber { $least } mm: Geben Sie mit --pose eine andere Stellung oder mit --tip ein anderes Glied an (in Python pose=… und tip=…)
 robot_file-single = nur ein Gelenk bewegt die Spitze, wie bei einem Rad, einem Rotor oder einem Greifer: Das ist kein Arm oder Bein, die mindestens zwei haben. Hat die Datei so etwas, nennen Sie sein Ende mit --tip (in Python tip=…)
@@ -1921,6 +1922,7 @@ robot_file-xacro_ran = { $file } ist ein Programm: xacro hat seine Ausdrücke au
 robot_file-include = { $file } lässt sich nicht einbinden: Es ist keine .xml-Datei im Ordner oder Paket des Roboters (--package NAME=ORDNER; in Python packages=…), oder sie wird zweimal eingebunden
 robot_file-guessed_tip = die Datei sagt nicht, welches Glied die Spitze ist: genommen wird { $tip }
 robot_file-guessed_end = die Datei hat kein Glied am Ende von { $tip }, dessen Ursprung nur die Gelenke davor bewegen: Die Spitze ist sein äußerstes Ende, in seinem Koordinatensystem bei { $place } m. Ein Glied mit festem Gelenk an dieser Stelle würde es sagen
+robot_file-unread_end = die Datei hat kein Glied am Ende von { $tip }, und ein Paket, das sein Netz liest, ist nicht installiert: Die Spitze bleibt an seinem Ursprung, den nur die Gelenke davor bewegen
 robot_file-guessed_free = schwebende, ebene und Kugelgelenke bleiben, wo sie sind: { $names }
 robot_file-guessed_mimic = Gelenke, die einem anderen folgen, bleiben, wo sie sind: { $names }
 robot_file-guessed_many = höchstens 8 Gelenke können sich auf dem Weg zur Spitze bewegen; diese bleiben, wo sie sind: { $names }

@@ -1465,6 +1465,7 @@ robot_file-pose = { $joint }: { $value } is not a position
 robot_file-pose_outside = { $joint }: { $value } is not between its limits { $low } and { $high }
 robot_file-armature = an armature of { $value } kg m²: expected 0 to { $most }
 robot_file-no_pose = the tip cannot move in all directions from any pose: its joints turn it about one point, or about parallel axes. Name another link with --tip (in Python, tip=…)
+robot_file-no_pose_package = the tip cannot move in all directions from any pose: its joints turn it about one point, or about parallel axes. Perhaps it is at the far end of its link, but the mesh that would show it needs a package that is missing: { $lines }. Or name another link with --tip (in Python, tip=…)
 robot_file-singular = the tip cannot move in all directions from this pose: give another one with --pose (in Python, pose=…)
 robot_file-circle = circles of up to { $circle } mm can be followed, but paths need { $least } mm: give another pose with --pose, or another link with --tip (in Python, pose=… and tip=…)
 robot_file-single = only one joint moves the tip, as with a wheel, a rotor or a gripper: this is no arm or leg, which has at least two. Where the file has one, name its end with --tip (in Python, tip=…)
@@ -1504,6 +1505,7 @@ robot_file-xacro_ran = { $file } is a program: xacro has run its expressions, in
 robot_file-include = { $file } cannot be included: it is not an .xml file in the folder or package of the robot (--package NAME=FOLDER; in Python, packages=…), or it is included twice
 robot_file-guessed_tip = the file does not say which link is the tip: { $tip } is taken
 robot_file-guessed_end = the file has no link at the end of { $tip }, whose origin only the joints before it move: its far end is the tip, at { $place } m in its frame. A link there, with a fixed joint, would say so
+robot_file-unread_end = the file has no link at the end of { $tip }, and a package that reads its mesh is not installed: the tip stays at its origin, which only the joints before it move
 robot_file-guessed_free = floating, planar and ball joints stay where they are: { $names }
 robot_file-guessed_mimic = joints that follow another one stay where they are: { $names }
 robot_file-guessed_many = at most 8 joints can move on the way to the tip; these stay where they are: { $names }

@@ -8,6 +8,7 @@ from __future__ import annotations
 import io
 import json
 import math
+import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from importlib import import_module
@@ -108,16 +109,17 @@ def _answer(job: bytes) -> bytes:
 
 
 def _read(job: Reading) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
-    warnings = list[str]()
+    said = list[str]()
     told: dict[str, Any] = {"names": {}, "weighed": [], "impossible": []}
     try:
         mujoco: Any = import_module("mujoco")
         _close_files()
-        mujoco.set_mju_user_warning(warnings.append)  # else they go to a file in the current folder
+        mujoco.set_mju_user_warning(said.append)  # else they go to a file in the current folder
         spec = mujoco.MjSpec.from_string(job.text, assets=job.files)
         told["weighed"] = _weighed(spec)
         impossible = dict(_impossible(spec))
-        model = spec.compile()
+        with warnings.catch_warnings(record=True, action="always") as caught:
+            model = spec.compile()
     except Exception as error:
         return {}, {**told, "refused": str(error) or type(error).__name__, "warnings": []}
     for number, inertia in impossible.items():
@@ -129,7 +131,8 @@ def _read(job: Reading) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
         for kind, count in NAMED.items()
     }
     arrays = {name: np.array(getattr(model, name)) for name in FIELDS}
-    return arrays, {**told, "refused": "", "warnings": warnings}
+    said += [str(each.message) for each in caught]
+    return arrays, {**told, "refused": "", "warnings": [*dict.fromkeys(said)]}
 
 
 def _impossible(spec: Any) -> Iterator[tuple[int, Array]]:

@@ -22,6 +22,7 @@ from onpath.models.robot_files.file_chain import FileChain, Options, TipAt
 from onpath.models.robot_files.file_reading import read_file
 from onpath.models.robot_files.guesses import Guess
 from onpath.models.robot_files.urdf_file import read_urdf
+from onpath.models.robot_files.whole_chain import FEW
 from onpath.models.robot_files.xml_elements import FileFault, file_bytes, root_of, shown
 from onpath.models.systems.chain_robot import (
     FASTEST_DECAY,
@@ -156,7 +157,7 @@ def _made(file: Path, name: str, read: FileChain, pose: Mapping[str, float]) -> 
     axes = output_axes(read.chain)
     if read.chain.n < len(axes):
         raise CodedError("robot_file.single" if read.chain.n == 1 else "robot_file.two_across")
-    chosen = _homes(read.chain, axes, pose)
+    chosen = _homes(read, axes, pose)
     chain, rotors = _with_rotors(read.chain, chosen[0].q)
     source = ChainSource(
         name=name,
@@ -185,8 +186,9 @@ def _made(file: Path, name: str, read: FileChain, pose: Mapping[str, float]) -> 
     )
 
 
-def _homes(chain: Chain, axes: tuple[Point, ...], pose: Mapping[str, float]) -> list[ChosenPose]:
+def _homes(read: FileChain, axes: tuple[Point, ...], pose: Mapping[str, float]) -> list[ChosenPose]:
     """Configurations at home, as given, and chosen where nothing is given, best first."""
+    chain = read.chain
     given = {joint.name: pose[joint.name] for joint in chain.joints if joint.name in pose}
     for joint in chain.joints:
         value = given.get(joint.name, joint.low)
@@ -206,6 +208,9 @@ def _homes(chain: Chain, axes: tuple[Point, ...], pose: Mapping[str, float]) -> 
             raise CodedError("robot_file.singular")
         return [ChosenPose(home, RULES)]
     found = chosen_poses(chain, axes, given)
+    lacking = [guess.line for guess in read.guesses if guess.kind == "package"]
+    if not found and lacking and chain.n <= FEW:
+        raise CodedError("robot_file.no_pose_package", lines=", ".join(lacking))
     if not found:
         raise CodedError("robot_file.no_pose" if not given else "robot_file.singular")
     return found

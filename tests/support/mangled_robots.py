@@ -77,7 +77,17 @@ INTRUDERS = (
     "<a/>",
 )
 
-WHOLE = ("no_tip", "no_joint", "no_pose", "singular", "circle", "massless", "pose_outside", "pose")
+WHOLE = (
+    "no_tip",
+    "no_joint",
+    "no_pose",
+    "no_pose_package",
+    "singular",
+    "circle",
+    "massless",
+    "pose_outside",
+    "pose",
+)
 WHOLE += ("single", "two_across", "no_joints", "hand")
 """Refusals of a robot as a whole, which belong to no line."""
 

@@ -12,7 +12,10 @@ import pytest
 from onpath.models.errors import CodedError
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.path_design import USUAL_RADIUS, presets
+from onpath.models.robot_files import whole_chain
 from onpath.models.robot_files.file_chain import Options
+from onpath.models.robot_files.file_masses import INSTALL
+from onpath.models.robot_files.hull_process import LIBRARY, Hull
 from onpath.models.studies.experiments import experiments
 from onpath.models.studies.path_text import curve_from_text
 from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
@@ -112,6 +115,20 @@ def test_what_is_no_arm_is_refused_in_one_sentence(
         read(tmp_path, links)
     assert caught.value.message.code == f"robot_file.{code}"
     assert "--tip" in str(caught.value)
+
+
+@pytest.mark.parametrize("folder", ["package://arm_parts", "."])
+def test_a_far_end_that_needs_a_package_names_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, folder: str
+) -> None:
+    """The mesh of the last link is in another package, or of a kind that a package reads."""
+    (tmp_path / "link2.stl").touch()
+    lacking = [Hull(fault=LIBRARY)]
+    monkeypatch.setattr(whole_chain, "hulls_of", lambda shapes: lacking * len(shapes))
+    with pytest.raises(CodedError) as caught:
+        read(tmp_path, PLANAR[:2], urdf("arm", PLANAR[:2], folder), tip="link2")
+    line = INSTALL if folder == "." else "--package arm_parts=FOLDER"
+    assert line in str(caught.value) and line in caught.value.message.text("de")
 
 
 @pytest.mark.thorough
