@@ -181,6 +181,7 @@ def law_view(
         y_rate=y_rate,
         output=output,
         closest=closest,
+        drawing=kind.spline,
         reference=reference,
         task=task,
         clock=clock,

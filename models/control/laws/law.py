@@ -159,6 +159,7 @@ class View:
         y, y_rate: the controlled output and its rate, (p, 1), [m], [m/s].
         output: coordinates along and across the path.
         closest: the path about the point closest to y.
+        drawing: whether the path is one of many pieces.
         reference: the path about the point that `Law.reference` asks for; None if it asks for none.
         task: the wanted motion along the path.
         clock: the reference point.
@@ -182,6 +183,7 @@ class View:
     y_rate: ca.SX
     output: VirtualOutput
     closest: LocalCurve
+    drawing: bool
     reference: LocalCurve | None
     task: PathReference
     clock: Clock

@@ -11,6 +11,7 @@ from onpath.models.paths.projection import wrap
 
 NEAR_SPREAD, FAR_SPREAD = 0.5, 0.2  # of 1 - λκ
 NEAR_TURN, FAR_TURN = 0.15, 0.3  # [rad], beyond the wanted turn in the time `View.lag`
+STILL = 1e-6  # [m/s]
 NEAR_END, FAR_END = 0.005, 0.02  # [m], beyond an end of an open path
 
 
@@ -91,7 +92,10 @@ def far_from_path(view: View, wanted: ca.SX) -> ca.SX:
         wanted: how fast θ is to turn, [rad/s].
     """
     output = view.output
-    turn = (ca.fabs(output.theta_rate) - wanted) * view.lag * ca.fmax(view.closest.turning, 1)
+    if view.drawing:
+        turn = (_turning(view) - wanted * view.closest.turning) * view.lag
+    else:
+        turn = (ca.fabs(output.theta_rate) - wanted) * view.lag * ca.fmax(view.closest.turning, 1)
     inside = _risen((NEAR_SPREAD - output.spread) / (NEAR_SPREAD - FAR_SPREAD))
     fast = _risen((turn - NEAR_TURN) / (FAR_TURN - NEAR_TURN))
     share = ca.fmax(inside, fast)
@@ -100,6 +104,20 @@ def far_from_path(view: View, wanted: ca.SX) -> ca.SX:
     past = beyond_end(view)
     past = (ca.sqrt(ca.dot(past, past)) - NEAR_END) / (FAR_END - NEAR_END)
     return ca.fmax(share, _risen(past))
+
+
+def _turning(view: View) -> ca.SX:
+    """|y''| / |y'| while the speed along the path and λ' stay as they are, [1/s].
+
+    On the path it is the rate at which the tangent turns. Beside it (16) also has to cancel the
+    change of 1 - λκ, which is fast where a bend begins.
+    """
+    output, closest = view.output, view.closest
+    speed2 = output.per_radian**2
+    steady = -(output.theta_rate**2) * ca.dot(closest.first, closest.second) / speed2
+    kept = output.acceleration(steady, ca.SX.zeros(view.frame.p - 1, 1))
+    moved2 = ca.fmax(ca.dot(view.y_rate, view.y_rate), STILL**2)
+    return ca.sqrt(ca.dot(kept, kept) / moved2)
 
 
 def wanted_turn(view: View) -> ca.SX:

@@ -10,17 +10,22 @@ import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
+from onpath.models.arrays import Array
 from onpath.models.closed_loop.controller_tick import INTEGRAL_REACH
 from onpath.models.closed_loop.faults import explained, fault_in
 from onpath.models.closed_loop.simulation import Push, kind_of
 from onpath.models.control.laws.path_following import far_from_path
+from onpath.models.control.virtual_output import virtual_output
 from onpath.models.paths.curves import circle, ellipse
 from onpath.models.paths.distance import path_distance
+from onpath.models.paths.frames import Plane
 from onpath.models.paths.path_design import presets
+from onpath.models.paths.projection import LocalCurve
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import NOT_FINITE
 from tests.support import pulls
+from tests.support.drawings import random_drawing
 from tests.support.pulls import parameters_of, runs_untouched, troubled, untouched
 
 FOLLOWER = "path_following"
@@ -29,6 +34,7 @@ PATHS = ("circle", "circle", "ellipse", "segment")
 PULLED = ("five_bar", "flexible", "seven_axes", "spatial_arm", "two_link_arm")
 """Robots that no pull stops. A cart comes to the end of its rail, a gantry with its rod to the end
 of its travel, and a hand may whip a joint of the planar arm (the table in README.md)."""
+WORD = {closed: random_drawing(5, closed=closed) for closed in (True, False)}
 NEAR = 0.005  # [m], within which it must be 1.5 s after its release
 
 
@@ -131,7 +137,9 @@ def test_the_return_takes_over_far_from_the_path_and_nowhere_else(
 ) -> None:
     output = SimpleNamespace(spread=ca.SX(spread), theta_rate=ca.SX(rate))
     clock, closest = SimpleNamespace(closed=True), SimpleNamespace(turning=ca.SX(turning))
-    view = SimpleNamespace(output=output, clock=clock, closest=closest, lag=ca.SX(lag))
+    view = SimpleNamespace(
+        output=output, clock=clock, closest=closest, lag=ca.SX(lag), drawing=False
+    )
     share = float(far_from_path(view, ca.SX(abs(wanted))))  # type: ignore[arg-type]
     turn = (abs(rate) - abs(wanted)) * lag * max(1.0, turning)
     assert 0 <= share <= 1
@@ -139,6 +147,42 @@ def test_the_return_takes_over_far_from_the_path_and_nowhere_else(
         assert share == 0  # the law as printed, bit by bit
     if spread <= 0.2 or turn >= 0.3:
         assert share == pytest.approx(1, abs=1e-9)
+
+
+@settings(max_examples=60)
+@given(st.integers(0, 2**32 - 1), st.booleans())
+def test_beside_a_drawing_the_turn_is_that_of_a_steady_motion(seed: int, closed: bool) -> None:
+    """By differences along the motion with a constant speed of σ(θ) and a constant λ'."""
+    rng, curve, frame, h = np.random.default_rng(seed), WORD[closed], Plane(), 1e-5
+    theta, side, speed, aside = rng.uniform(-3, 3), rng.uniform(-1, 1), *rng.normal(0, 0.1, 2)
+    sigma, first, second, third = (each[0] for each in curve.all_orders(np.array([theta])))
+    distance = 0.9 * side / max(abs(float(curve.curvature(np.array(theta)))), 10.0)
+    rate = speed / np.linalg.norm(first)
+
+    def place(t: float) -> Array:
+        at = theta + rate * t - (rate * t) ** 2 / 2 * (first @ second) / (first @ first)
+        z, along = (curve.at(np.array(at), order) for order in (0, 1))
+        left = np.array([-along[1], along[0]]) / np.linalg.norm(along)
+        return z + (distance + aside * t) * left
+
+    y, y_rate = place(0.0), (place(h) - place(-h)) / (2 * h)
+    turned = np.linalg.norm(place(h) - 2 * y + place(-h)) / h**2 / np.linalg.norm(y_rate)
+    assume(turned > 0.01)
+    closest = LocalCurve(ca.SX(theta), *(ca.SX(each) for each in (sigma, first, second, third)))
+    output = virtual_output(closest, frame, None, ca.SX(y), ca.SX(y_rate))
+    assume(float(output.spread) > 0.5)
+    for turn, share in ((0.14, 0.0), (0.225, 0.5), (0.31, 1.0)):
+        view = SimpleNamespace(
+            output=output,
+            closest=closest,
+            clock=SimpleNamespace(closed=True),
+            frame=frame,
+            y_rate=ca.SX(y_rate),
+            lag=ca.SX(turn / turned),
+            drawing=True,
+        )
+        found = float(far_from_path(view, ca.SX(0)))  # type: ignore[arg-type]
+        assert found == pytest.approx(share, abs=0.02)
 
 
 @pytest.mark.thorough
