@@ -61,7 +61,7 @@ _FILES = dict[str, GivenFile]()  # the robots' files, by the robot's name
 def robot_of_file(file: Path, options: Options) -> tuple[RobotEntry, tuple[Message, ...]]:
     """Add the robot of a file to the catalogue; return it, with remarks for the user.
 
-    What has been guessed is among the remarks, but for the pose, which one sees. Each is said once.
+    What has been guessed is among the remarks. Each is said once.
 
     Raises:
         ValueError: see `read_robot`.
@@ -81,7 +81,7 @@ def read_file(file: Path, options: Options) -> ReadFile:
     read = read_robot(file, options)
     source = read.entry.source
     assert source is not None
-    guesses = (told_guess(guess) for guess in read.guesses if guess.kind != "pose")
+    guesses = (told_guess(guess) for guess in read.guesses)
     remarks = {str(remark): remark for remark in (*read.remarks, *guesses)}
     given = GivenFile(
         file=file.resolve(),
