@@ -8,6 +8,7 @@ from collections.abc import Collection, Iterator, Sequence
 from onpath.lessons.safe_html import safe
 from onpath.lessons.schema import (
     Choice,
+    Derivation,
     Front,
     NumberQuestion,
     OpenQuestion,
@@ -51,12 +52,12 @@ def _step_lacks(step: Step, after: Step | None) -> Iterator[str]:
     if step.kind != "run" and step.script is not None:
         yield f": a script stands in a `run` step, and this is a `{step.kind}` step"
     if step.kind == "quiz" and not any(isinstance(b, Asked) for b in step.blocks):
-        yield " has no question: a quiz, number or open block"
+        yield " has no question: a quiz, number, open or derivation block"
     if step.kind == "task" and not any(isinstance(b, Task) for b in step.blocks):
         yield " has no task"
 
 
-Asked = Quiz | NumberQuestion | OpenQuestion
+Asked = Quiz | NumberQuestion | OpenQuestion | Derivation
 FOLDED = re.compile(r"<details>.*?</details>", re.DOTALL)
 
 

@@ -19,7 +19,16 @@ from onpath.lessons.parse import read_lesson
 from onpath.lessons.problems import LessonError, Problem, line_of, near
 from onpath.lessons.routes import FOLDER as ROUTES
 from onpath.lessons.routes import Route, read_routes
-from onpath.lessons.schema import Choice, Lesson, NumberQuestion, Quiz, Sketch, Step, Text
+from onpath.lessons.schema import (
+    Choice,
+    Derivation,
+    Lesson,
+    NumberQuestion,
+    Quiz,
+    Sketch,
+    Step,
+    Text,
+)
 from onpath.lessons.task_schema import Reference, Task
 from onpath.lessons.text_files import FileError, load_toml, read_text, toml_fault
 from onpath.lessons.toml_blocks import nearest
@@ -337,6 +346,11 @@ def _asked(step: Step) -> dict[str, object]:
             (b.number, b.tolerance, [each.number for each in b.wrong])
             for b in blocks
             if isinstance(b, NumberQuestion)
+        ],
+        "derived lines": [
+            (b.names, [line.without_words for line in b.line])
+            for b in blocks
+            if isinstance(b, Derivation)
         ],
         "misconceptions": [bool(b.misconception) for b in blocks if isinstance(b, Quiz)],
         f"texts ({', '.join(NOTES)})": [

@@ -18,6 +18,7 @@ from onpath.lessons.schema import (
     KINDS,
     Block,
     Choice,
+    Derivation,
     Lesson,
     NumberQuestion,
     OpenQuestion,
@@ -38,8 +39,11 @@ MINUTES = {
     "task": 3.0,
     "number": 1.0,
     "open": 1.0,
+    "derivation": 0.0,
 }
 """Assumed time for each kind of activity, beyond reading."""
+LINE = 1.0
+"""The same for each line of a derivation."""
 FOLDED = re.compile(r"<details>.*?</details>", re.DOTALL)
 TAG = re.compile(r"<[^>]*>")
 
@@ -76,9 +80,14 @@ def step_minutes(step: Step) -> Minutes:
     return Minutes(
         reading=sum(map(word_count, read)) / WORDS,
         runs=0.0 if step.script is None else step.script.seconds / 60,
-        predictions=sum(MINUTES[KINDS[type(block)]] for block in asked),
+        predictions=sum(map(_answering, asked)),
         tasks=MINUTES["task"] * len(step.tasks()) + tried,
     )
+
+
+def _answering(block: Block) -> float:
+    lines = len(block.line) if isinstance(block, Derivation) else 0
+    return MINUTES[KINDS[type(block)]] + LINE * lines
 
 
 def together(parts: Iterable[Minutes]) -> Minutes:
@@ -128,6 +137,12 @@ def _(block: Sketch) -> list[str]:
 @_read.register(OpenQuestion)
 def _(block: NumberQuestion | OpenQuestion) -> list[str]:
     return [block.question, block.answer]
+
+
+@_read.register
+def _(block: Derivation) -> list[str]:
+    lines = [text for line in block.line for text in (line.question, line.answer)]
+    return [block.question, *lines, block.answer]
 
 
 @_read.register(Choice)

@@ -26,6 +26,7 @@ from onpath.lessons.prose import data_faults, read_prose, text_faults
 from onpath.lessons.rendered import rendered
 from onpath.lessons.schema import (
     Block,
+    Derivation,
     Front,
     Lesson,
     NumberQuestion,
@@ -42,6 +43,7 @@ from onpath.lessons.task_schema import Task
 from onpath.lessons.text_files import FileError, load_toml, read_text
 from onpath.lessons.toml_blocks import read_checked, read_toml
 from onpath.lessons.vocabulary.blocks import (
+    derivation_faults,
     number_faults,
     option_faults,
     prediction_faults,
@@ -239,6 +241,7 @@ class _Reader:
                 "quiz": (Quiz, _quiz_faults),
                 "number": (NumberQuestion, number_faults),
                 "open": (OpenQuestion, lambda _: ()),
+                "derivation": (Derivation, derivation_faults),
             }
             self._add(draft, self._checked(content, line, *kinds[what]), line)
         draft.broken |= len(self._problems) > before

@@ -91,7 +91,8 @@ class Notes(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         hints: number of hints shown, by task.
         quiz: chosen options, by step and block.
         numbers: answers that are numbers, by step and block.
-        written: answers in the student's own words, by step and block.
+        written: answers in the student's own words, and the rows of derivations (see
+            `lessons.derivation.judged`), by step and block.
         twice: quizzes and questions for numbers that have been answered a second time, by step and
             block.
         asked_again: predictions that the teacher has asked again after a discussion, by step; one

@@ -9,7 +9,16 @@ from msgspec.structs import replace
 
 from onpath.lessons.formulas import to_html
 from onpath.lessons.kept.option_keys import fingerprint
-from onpath.lessons.schema import Choice, Front, NumberQuestion, OpenQuestion, Option, Quiz, Sketch
+from onpath.lessons.schema import (
+    Choice,
+    Derivation,
+    Front,
+    NumberQuestion,
+    OpenQuestion,
+    Option,
+    Quiz,
+    Sketch,
+)
 from onpath.lessons.task_schema import Task
 
 
@@ -54,6 +63,18 @@ def _(part: NumberQuestion) -> NumberQuestion:
 @rendered.register
 def _(part: OpenQuestion) -> OpenQuestion:
     return _html(part, "question", "answer")
+
+
+@rendered.register
+def _(part: Derivation) -> Derivation:
+    lines = tuple(
+        replace(
+            _html(line, "question", "answer"),
+            wrong=tuple(_html(each, "answer") for each in line.wrong),
+        )
+        for line in part.line
+    )
+    return replace(_html(part, "question", "answer"), line=lines)
 
 
 @rendered.register

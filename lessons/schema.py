@@ -147,6 +147,60 @@ class OpenQuestion(Data, frozen=True):
     answer: str
 
 
+class WrongFormula(Data, frozen=True):
+    """A wrong value of a line of a derivation that is known, since it comes from a known mistake.
+
+    Attributes:
+        formula: as in `DerivedLine`.
+        answer: what is said to those who give it, without the right one.
+    """
+
+    formula: str
+    answer: str
+
+
+class DerivedLine(Data, frozen=True):
+    """A line of a derivation.
+
+    Attributes:
+        formula: what is right, in the derivation's names and those of earlier lines; see
+            `lessons.derivation.typed`.
+        tolerance: of a number, in `unit`; 0 if a formula is asked for.
+        answer: shown after a right or a second answer.
+        name: by which later lines use its value.
+        wrong: mistakes that are answered by name.
+    """
+
+    question: str
+    formula: str
+    answer: str
+    tolerance: float = 0.0
+    unit: str = ""
+    name: str = ""
+    wrong: tuple[WrongFormula, ...] = ()
+
+    @property
+    def without_words(self) -> tuple[object, ...]:
+        """What it judges by, the same in all languages."""
+        wrong = [each.formula for each in self.wrong]
+        return self.formula, self.tolerance, self.name, wrong
+
+
+class Derivation(Data, frozen=True):
+    """A result that the student derives in some lines, each of which is checked.
+
+    Attributes:
+        question: what is derived.
+        answer: what it says, shown at the end.
+        names: that may be typed -> the range in which formulas are compared.
+    """
+
+    question: str
+    line: tuple[DerivedLine, ...]
+    answer: str
+    names: dict[str, tuple[float, float]] = msgspec.field(default_factory=dict)
+
+
 class LabLink(msgspec.Struct, frozen=True):
     """Words in the text that act on the lab when they are clicked."""
 
@@ -167,7 +221,7 @@ class Text(msgspec.Struct, frozen=True):
     when: str = ""
 
 
-Block = Text | Choice | Sketch | Task | Quiz | NumberQuestion | OpenQuestion
+Block = Text | Choice | Sketch | Task | Quiz | NumberQuestion | OpenQuestion | Derivation
 KINDS: dict[type[Block], str] = {
     Text: "text",
     Choice: "choice",
@@ -176,6 +230,7 @@ KINDS: dict[type[Block], str] = {
     Quiz: "quiz",
     NumberQuestion: "number",
     OpenQuestion: "open",
+    Derivation: "derivation",
 }
 """Names of the kinds of blocks."""
 

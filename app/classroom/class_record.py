@@ -17,12 +17,14 @@ from typing import Any
 
 from onpath.app.classroom.classroom import Member
 from onpath.lessons.course import Course
+from onpath.lessons.derivation.judged import judged
 from onpath.lessons.kept.option_keys import second_key
 from onpath.lessons.option_order import LETTERS
 from onpath.lessons.progress import Answer, Given, Notes, given_to
 from onpath.lessons.schema import (
     Block,
     Choice,
+    Derivation,
     Lesson,
     NumberQuestion,
     OpenQuestion,
@@ -33,11 +35,12 @@ from onpath.lessons.schema import (
 from onpath.lessons.votes import Vote, is_late, vote_on
 
 Row = Mapping[str, str | int | float]
-QUESTIONS = Quiz, NumberQuestion, OpenQuestion
+QUESTIONS = Quiz, NumberQuestion, OpenQuestion, Derivation
 KINDS_ASKED: dict[type[Block], str] = {
     Quiz: "question",
     NumberQuestion: "number",
     OpenQuestion: "words",
+    Derivation: "derivation",
 }
 WIDTH = 14  # [characters], width of a column
 _STUDENT = ("number", "nickname")
@@ -80,10 +83,10 @@ def class_record(
     after the vote was closed, and empty if there was none. `result` is "answered", "skipped",
     "open" (neither), "passed" (a task), or "unknown" (the options have changed since). `right` is 1
     or 0; `chosen` and `reason` are the letters of options; `value` is a number, and `text` the
-    student's own words. `hints` is the
-    number of a task's hints that were shown. `right` is empty for a task that is meant to be found
-    by trying, and so counts nothing. The sheet Sketches
-    has the points of drawn curves, in the units of their axes.
+    student's own words, or the rows of a derivation, which is right if each line was so at once.
+    `hints` is the number of a task's hints that were shown. `right` is empty for a task that is
+    meant to be found by trying, and so counts nothing. The sheet Sketches has the points of drawn
+    curves, in the units of their axes.
 
     Args:
         made: time of the record, in UTC.
@@ -243,6 +246,9 @@ def _answered(block: Block, item: str, given: Given | None, notes: Notes) -> Row
     if isinstance(block, Quiz) and given.answer is not None:
         is_lost = given.answer.option is None and item in notes.unknown
         return _unknown() if is_lost else _chosen(block, given.answer.option)
+    if isinstance(block, Derivation) and given.text:
+        right = all(state.good for state in judged(block, given.text))
+        return {"result": "answered", "right": int(right), "text": given.text}
     return {"result": "answered" if given.text else "open", "text": given.text}
 
 

@@ -25,7 +25,14 @@ from onpath.app.view.report_facts import (
 from onpath.lessons.action_schema import RobotName
 from onpath.lessons.progress import Answer, Truth
 from onpath.lessons.record import QUANTITIES
-from onpath.lessons.schema import NumberQuestion, OpenQuestion, Prediction, Quiz, Sketch
+from onpath.lessons.schema import (
+    Derivation,
+    NumberQuestion,
+    OpenQuestion,
+    Prediction,
+    Quiz,
+    Sketch,
+)
 from onpath.lessons.sides import robot_names
 from onpath.lessons.task_schema import Task
 from onpath.lessons.words import DEFAULT, Words
@@ -87,7 +94,7 @@ class ChapterRecord:
     tasks: list[tuple[Task, str]]
     questions: list[tuple[Quiz, int | None, bool]]
     numbers: list[tuple[NumberQuestion, float | None]]
-    written: list[tuple[OpenQuestion, str]]
+    written: list[tuple[OpenQuestion | Derivation, str]]
 
 
 def report(run: LessonState, code: str, made: datetime) -> bytes:

@@ -15,13 +15,15 @@ from msgspec.structs import replace
 from onpath.app.lab.answers import kept_number, kept_text
 from onpath.lessons.adaptive.branches import is_shown
 from onpath.lessons.course import Course
+from onpath.lessons.derivation.typed import read_formula, spellings
 from onpath.lessons.kept.known_choices import mark_of, marks_of
 from onpath.lessons.kept.option_keys import second_key, why_key
 from onpath.lessons.pace import Pace
-from onpath.lessons.progress import Answer, Given, Notes, Progress, given_to
+from onpath.lessons.progress import MOST_TEXT, Answer, Given, Notes, Progress, given_to
 from onpath.lessons.routes import Route
 from onpath.lessons.schema import (
     Block,
+    Derivation,
     Lesson,
     NumberQuestion,
     OpenQuestion,
@@ -360,17 +362,22 @@ class LessonState:
             self._note_on(lesson, numbers={**numbers, item: number})
 
     def answer_in_words(self, block: int, typed: str, sent: Sent = UNSENT) -> None:
-        """Answer an open question, or take the answer back with an empty one.
+        """Answer an open question, or take the answer back with an empty one; or answer the next
+        line of a derivation, which stays answered.
 
         Raises:
-            ValueError: there is no such question.
+            ValueError: there is no such question, or the line cannot be read.
         """
         lesson, index = self._asked(sent)
-        if not isinstance(_block(lesson, index, block), OpenQuestion):
+        asked = _block(lesson, index, block)
+        if not isinstance(asked, OpenQuestion | Derivation):
             raise CodedError("lesson.no_such_option")
         item, text = f"{index}.{block}", kept_text(typed)
+        written = self._notes_on(lesson).written
+        if isinstance(asked, Derivation):
+            read_formula(text, spellings(asked.names), ",")
+            text = f"{written.get(item, '')}\n{text}".strip()[:MOST_TEXT]
         if self._give(lesson, Given(item, text=text), sent):
-            written = self._notes_on(lesson).written
             others = {k: kept for k, kept in written.items() if k != item}
             self._note_on(lesson, written={**others, **({item: text} if text else {})})
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import msgspec
@@ -9,9 +10,11 @@ import msgspec
 from onpath.app.steps.step_html import StepPart
 from onpath.lessons.action_schema import Script
 from onpath.lessons.checks import bound_words
+from onpath.lessons.derivation.judged import LineState, points_of
+from onpath.lessons.derivation.typed import spellings
 from onpath.lessons.progress import Answer, Truth
 from onpath.lessons.record import QUANTITIES, ROBOTS
-from onpath.lessons.schema import Choice, Lesson, NumberQuestion, Quiz, Sketch
+from onpath.lessons.schema import Choice, Derivation, Lesson, NumberQuestion, Quiz, Sketch
 from onpath.lessons.sides import robot_names
 from onpath.lessons.task_schema import Bound, Task
 from onpath.lessons.words import Words
@@ -31,9 +34,29 @@ def block_data(part: StepPart, lesson: Lesson, index: int, words: Words) -> dict
     elif isinstance(block, NumberQuestion) and part.told:
         wrong = [each.number for each in block.wrong]
         data |= {"number": block.number, "tolerance": block.tolerance, "wrong": wrong}
+    elif isinstance(block, Derivation):
+        data |= derivation_data(block, part.states)
     elif isinstance(block, Task):
         data["limits"] = limits_data(block, lesson.laws_shown(index), words)
     return data
+
+
+def derivation_data(block: Derivation, states: Sequence[LineState] | None) -> dict[str, Any]:
+    """How formulas may be typed, and either what has become of each line, or how it is judged."""
+    data = dict[str, Any](known=spellings(block.names))
+    if states is not None:
+        return data | {"states": [msgspec.to_builtins(each) for each in states]}
+    lines = [
+        {
+            "name": line.name,
+            "formula": line.formula,
+            "tolerance": line.tolerance,
+            "wrong": [each.formula for each in line.wrong],
+        }
+        for line in block.line
+    ]
+    values = {name: each.tolist() for name, each in points_of(block).items()}
+    return data | {"lines": lines, "values": values}
 
 
 PLOTS = {"torque": "torques"} | {

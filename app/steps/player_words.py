@@ -13,6 +13,12 @@ _PLAIN = (
         "lesson.no_number",
         "answer.check",
         "answer.keep",
+        "answer.carried",
+        "answer.line",
+        "formula.missing",
+        "formula.between",
+        "formula.bracket",
+        "formula.unclear",
     ),
     *("answer.sending", "answer.sent"),
     *("lesson.committed", "lesson.drawn", "lesson.skipped", "lesson.passed", "report.right"),
@@ -21,6 +27,11 @@ _PLAIN = (
 )
 _FILLED = {
     "chart.point": ("time",),
+    "formula.refused": ("place", "reason"),
+    "formula.exponent": ("most",),
+    "formula.function": ("name",),
+    "formula.unknown": ("names",),
+    "formula.long": ("most",),
     "site.sketch": ("quantity", "unit", "seconds"),
 }
 """Messages whose values the page fills in."""

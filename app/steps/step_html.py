@@ -9,6 +9,7 @@ from msgspec.structs import replace
 
 from onpath.app.common.templates import Markup, part_of_page
 from onpath.lessons.adaptive.own_numbers import filled, marked
+from onpath.lessons.derivation.judged import LineState
 from onpath.lessons.option_order import LETTERS
 from onpath.lessons.progress import Notes
 from onpath.lessons.safe_html import safe
@@ -29,6 +30,7 @@ class StepPart:
         lettered: whether the options have letters, of which a class may speak.
         told: whether the page has the answers, which it may show at the right time.
         replies: the wrong options or numbers of which it has the answers, if not `told`.
+        states: of a derivation's lines; None if the page's script judges them.
         hints: how many hints of a task are shown; None if the reader unfolds them.
         way: the way in which a task was passed; None if the page's script decides that.
         remark: what is said above a question; may be empty.
@@ -43,6 +45,7 @@ class StepPart:
     lettered: bool = False
     told: bool = True
     replies: tuple[int, ...] = ()
+    states: tuple[LineState, ...] | None = None
     hints: int | None = None
     way: int | None = None
     remark: str = ""

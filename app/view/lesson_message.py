@@ -19,10 +19,12 @@ from onpath.app.view.lesson_view import LessonView
 from onpath.app.view.lessons import route_line
 from onpath.app.view.step_navigation import pager_of
 from onpath.app.view.symbol_geometry import has_meaning
+from onpath.lessons.derivation.judged import judged
 from onpath.lessons.option_order import LETTERS
 from onpath.lessons.progress import Answer
 from onpath.lessons.schema import (
     Choice,
+    Derivation,
     Lesson,
     NumberQuestion,
     Prediction,
@@ -141,6 +143,9 @@ def _part(lesson: Lesson, block_index: int, run: LessonView) -> StepPart | None:
             replies=() if chosen is None or told else (chosen,),
             remark=run.words("lesson.unknown") if unknown else "",
         )
+    if isinstance(block, Derivation):
+        states = tuple(judged(block, notes.written.get(key, "")))
+        return replace(part, told=all(each.closed for each in states), states=states)
     if not isinstance(block, NumberQuestion):
         return replace(part, told=key in notes.written)
     given = None if run.is_voted_on(key) else notes.numbers.get(key)

@@ -13,6 +13,7 @@ from onpath.app.lab.lesson_state import LessonState
 from onpath.lessons.progress import Answer, Notes, Truth
 from onpath.lessons.schema import (
     Choice,
+    Derivation,
     Lesson,
     NumberQuestion,
     OpenQuestion,
@@ -95,9 +96,9 @@ def numbers(lesson: Lesson) -> dict[str, NumberQuestion]:
     return _of_kind(lesson, NumberQuestion)
 
 
-def open_questions(lesson: Lesson) -> dict[str, OpenQuestion]:
-    """Questions answered in the student's own words, by note key: step and block."""
-    return _of_kind(lesson, OpenQuestion)
+def open_questions(lesson: Lesson) -> dict[str, OpenQuestion | Derivation]:
+    """Questions answered in the student's own words or lines, by note key: step and block."""
+    return _of_kind(lesson, OpenQuestion) | _of_kind(lesson, Derivation)
 
 
 def _of_kind(lesson: Lesson, kind: type[T]) -> dict[str, T]:

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+import numpy as np
+
+from onpath.lessons.derivation.judged import MOST_LINES, is_same, points_of, value_of
+from onpath.lessons.derivation.typed import NAME, NUMPY
 from onpath.lessons.measures.responses import WITH_SIGN
 from onpath.lessons.measures.stated import zero_faults
 from onpath.lessons.record import QUANTITIES
-from onpath.lessons.schema import NumberQuestion, Option, Prediction, Sketch
+from onpath.lessons.schema import Derivation, NumberQuestion, Option, Prediction, Sketch
 from onpath.lessons.task_schema import (
     Better,
     Bound,
@@ -26,6 +30,7 @@ from onpath.models.control.laws.own import OWN
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.control.settable import specs
 from onpath.models.control.sides import SIDES
+from onpath.models.errors import CodedError
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS, RobotEntry
 
@@ -61,6 +66,41 @@ def number_faults(question: NumberQuestion) -> Iterator[str]:
     for i, number in enumerate(numbers[1:], 1):
         if any(abs(number - other) <= 2 * question.tolerance for other in numbers[:i]):
             yield f"wrong number {number:g}: within twice the tolerance of another one"
+
+
+def derivation_faults(block: Derivation) -> Iterator[str]:
+    """The faults of a derivation: of its names, and of each formula."""
+    if not 1 <= len(block.line) <= MOST_LINES:
+        yield f"{len(block.line)} lines: between 1 and {MOST_LINES}"
+    for name in (*block.names, *filter(None, (line.name for line in block.line))):
+        if not NAME.fullmatch(name) or name in (*NUMPY, "pi"):
+            yield f"name {name!r}: letters and digits, and no function's name"
+            return
+    if any(low >= high for low, high in block.names.values()):
+        yield "names: each has a range, from less to more"
+        return
+    values = points_of(block)
+    for line in block.line:
+        if line.name in values:
+            yield f"name {line.name!r}: another line or name has it"
+        try:
+            right, *wrong = (
+                value_of(formula, values)
+                for formula in (line.formula, *(each.formula for each in line.wrong))
+            )
+        except CodedError as error:
+            yield f"formula: {error}"
+            return
+        if not all(
+            np.isfinite(each).all() and np.abs(each).max() <= HIGHEST for each in (right, *wrong)
+        ):
+            yield f"formula {line.formula!r}: a value, or a wrong one, is not within ±{HIGHEST:g}"
+        if line.tolerance < 0 or is_same(0 * right, right, line.tolerance):
+            yield f"tolerance = {line.tolerance:g}: 0 would be accepted, or nothing"
+        for each, value in zip(line.wrong, wrong, strict=True):
+            if is_same(value, right, 2 * line.tolerance):
+                yield f"wrong formula {each.formula!r}: it is the right one"
+        values |= {line.name: right} if line.name else {}
 
 
 def option_faults(options: Sequence[Option]) -> Iterator[str]:

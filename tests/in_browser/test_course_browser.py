@@ -17,6 +17,7 @@ from onpath.app.server.lab_server import LabServer
 from onpath.lessons.progress import Notes
 from onpath.lessons.schema import (
     Choice,
+    Derivation,
     Lesson,
     NumberQuestion,
     OpenQuestion,
@@ -36,7 +37,7 @@ pytestmark = pytest.mark.thorough
 COURSE, _ = built_in_course()
 NUMBERS = COURSE.numbers()
 LESSONS = list(COURSE.lessons)
-Asked = Choice | Sketch | Quiz | NumberQuestion | OpenQuestion
+Asked = Choice | Sketch | Quiz | NumberQuestion | OpenQuestion | Derivation
 MISSING = """([htmls, other]) => {
     const bare = text => text.replace(/\\s+/g, "")
     const shown = other ? new DOMParser().parseFromString(other, "text/html") : document
@@ -149,7 +150,7 @@ def what_was_done(lesson: Lesson, notes: Notes) -> list[str]:
                 chosen = notes.answers[str(index)].option
             elif isinstance(block, Quiz):
                 chosen = notes.quiz[f"{index}.{place}"]
-            elif isinstance(block, NumberQuestion | OpenQuestion):
+            elif isinstance(block, NumberQuestion | OpenQuestion | Derivation):
                 told.append(block.answer)
             if isinstance(block, Choice | Quiz) and chosen is not None:
                 told += [block.options[chosen].text, block.options[chosen].answer]

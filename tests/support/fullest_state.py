@@ -23,6 +23,7 @@ from onpath.lessons.progress import (
 )
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import (
+    Derivation,
     Lesson,
     NumberQuestion,
     OpenQuestion,
@@ -76,7 +77,7 @@ def _notes(lesson: Lesson) -> Notes:
         hints=hints,
         quiz=dict.fromkeys(_blocks(lesson, Quiz), 10),
         numbers=dict.fromkeys(_blocks(lesson, NumberQuestion), LONG_NUMBER),
-        written=dict.fromkeys(_blocks(lesson, OpenQuestion), WORDS),
+        written=dict.fromkeys(_blocks(lesson, OpenQuestion, Derivation), WORDS),
         twice=(*_blocks(lesson, Quiz), *_blocks(lesson, NumberQuestion)),
         asked_again=tuple(asked),
         second=answers,
@@ -85,7 +86,11 @@ def _notes(lesson: Lesson) -> Notes:
         handed_in=True,
         given=tuple(_given(key, answer) for key, answer in answers.items() for _ in range(3))
         + tuple(_given(key) for kind in (Quiz, NumberQuestion) for key in _blocks(lesson, kind))
-        + tuple(Given(key, text=WORDS) for key in _blocks(lesson, OpenQuestion) for _ in range(2)),
+        + tuple(
+            Given(key, text=WORDS)
+            for key in _blocks(lesson, OpenQuestion, Derivation)
+            for _ in range(2)
+        ),
     )
 
 
@@ -102,9 +107,9 @@ def _given(key: str, answer: Answer | None = None) -> Given:
     )
 
 
-def _blocks(lesson: Lesson, kind: type[Any]) -> list[str]:
+def _blocks(lesson: Lesson, *kinds: type[Any]) -> list[str]:
     def keys(index: int, step: Step) -> list[str]:
-        return [f"{index}.{n}" for n, block in enumerate(step.blocks) if isinstance(block, kind)]
+        return [f"{index}.{n}" for n, block in enumerate(step.blocks) if isinstance(block, kinds)]
 
     return [key for index, step in enumerate(lesson.steps) for key in keys(index, step)]
 

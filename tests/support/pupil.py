@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 import pytest
 from playwright.sync_api import Locator
 
+from onpath.lessons.derivation.judged import points_of, value_of
 from onpath.lessons.schema import (
     Choice,
+    Derivation,
     Lesson,
     NumberQuestion,
     OpenQuestion,
@@ -120,6 +123,8 @@ class Pupil:
                 self._compute(block)
             elif isinstance(block, OpenQuestion):
                 self._write(block)
+            elif isinstance(block, Derivation):
+                self._derive(place, block)
 
     def pause(self) -> None:
         """Pause the lab, so that nothing but the gestures of a task happens."""
@@ -212,6 +217,21 @@ class Pupil:
         wait_for(lambda: self.tab.lab.lessons.notes.written)
         self.tab.wait_until_built()
 
+    def _derive(self, place: int, block: Derivation) -> None:
+        """Type what is right, after something else for those who begin wrong."""
+        notes, key = self.tab.lab.lessons, f"{self.tab.lab.lessons.index}.{place}"
+        box = self.tab.page.locator(f'#op-column .step.open [data-block="{place}"]')
+        values, rows = points_of(block), 0
+        for i, line in enumerate(block.line):
+            values[line.name] = value_of(line.formula, values)
+            right = f"{values[line.name][0]:.9f}" if line.tolerance else _expanded(block, i)
+            for row in (right,) if self._right else ("77777", right):
+                box.locator(f'[data-line="{i}"] input').fill(row)
+                box.locator(f'[data-line="{i}"] button').click()
+                rows += 1
+                wait_for(lambda: len(notes.notes.written.get(key, "").split("\n")) == rows)
+                self.tab.wait_until_built()
+
     def field(self, label: str) -> Locator:
         """Return a field of the page."""
         return self.tab.page.get_by_label(label).filter(visible=True)
@@ -224,3 +244,12 @@ class Pupil:
             wait_for(lambda: passed(self.tab, task), seconds=10.0)
         except AssertionError:
             pytest.fail(f"{task.id}: {verdicts(self.tab, task)} {self.tab.lab.message}")
+
+
+def _expanded(block: Derivation, index: int) -> str:
+    """The formula of a line in the derivation's names alone."""
+    text = block.line[index].formula
+    for earlier in reversed(block.line[:index]):
+        if earlier.name:
+            text = re.sub(rf"\b{earlier.name}\b", f"({earlier.formula})", text)
+    return text

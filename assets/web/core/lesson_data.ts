@@ -152,6 +152,27 @@ export interface SketchData {
 /** A sketch at the end of a lesson, with what happened. */
 export interface ChartData { data: SketchData; script: Script | null; answer: Answer; truth: Curves | null }
 
+/** A line of a derivation, see lessons/schema.py. */
+export interface LineData { name: string; formula: string; tolerance: number; wrong: string[] }
+
+/** What has become of a line, see lessons/derivation/judged.py. */
+export interface LineState {
+    tries: { typed: string; verdict: "right" | "carried" | "wrong"; known: number | null }[]
+    closed: boolean
+}
+
+export interface DerivationData {
+    kind: "derivation"
+    /** How names and functions may be typed. */
+    known: Record<string, string>
+    /** On a page without a server. */
+    lines?: LineData[]
+    /** Of the names, at random points. */
+    values?: Record<string, number[]>
+    /** From a lab, which judges itself. */
+    states?: LineState[]
+}
+
 export type BlockData =
     // Links have actions: those above on a page without a server, those of channel/messages.ts in the lab.
     | { kind: "text"; links: (unknown[] | null)[]; when?: [string, number[]] }
@@ -159,6 +180,7 @@ export type BlockData =
     | { kind: "choice" | "quiz"; right?: number; voted?: boolean }
     | { kind: "number"; number?: number; tolerance?: number; wrong?: number[]; voted?: boolean }
     | { kind: "open" }
+    | DerivationData
     | SketchData
     | TaskData
 

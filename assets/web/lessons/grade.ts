@@ -2,6 +2,7 @@
 
 import type { Grade } from "./progress"
 import type { StepData } from "../core/lesson_data"
+import { statesOf } from "./derivation"
 import { given, type Notes } from "./notes"
 import { accepted } from "./own"
 
@@ -25,6 +26,7 @@ export function gradeOf(steps: StepData[], notes: Notes): Grade {
             else if (block.kind === "open") parts.push(key in notes.written)
             else if (block.kind === "quiz") judged(first !== undefined, first === block.right)
             else if (block.kind === "number") judged(first !== undefined, first !== undefined && accepted(first, block))
+            else if (block.kind === "derivation") for (const line of statesOf(block, notes.written[key] ?? "")) judged(line.closed, line.tries[0] !== undefined && line.tries[0].verdict !== "wrong")
             else if (block.kind === "task" && block.checks && !block.exploratory) judged(block.id in notes.tasks, block.id in notes.tasks)
         })
     })

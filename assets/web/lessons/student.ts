@@ -20,6 +20,8 @@ export interface Student {
     chooses(question: string, option: number): void
     gives(question: string, number: number): void
     writes(question: string, text: string): void
+    /** One more row of a derivation. */
+    derives(question: string, row: string): void
     /** A hint of a task is read, the first of which is number 1. */
     reads(task: string, hint: number): void
     /** A run was seen to its end; `asked` is the step of the prediction that it shows. */
@@ -89,6 +91,11 @@ export class LocalStudent implements Student {
     writes(question: string, text: string): void {
         this.notes.written[question] = text
         this.save()
+    }
+
+    derives(question: string, row: string): void {
+        const before = this.notes.written[question]
+        this.writes(question, before ? `${before}\n${row}` : row)
     }
 
     reads(task: string, hint: number): void {

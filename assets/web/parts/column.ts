@@ -39,6 +39,7 @@ class RemoteStudent implements Student {
     gives(question: string, given: number): void { this.post({ do: "AnswerNumber", block: placeOf(question), given }, question) }
     reads(): void {} // the server shows the hints, and so knows
     writes(question: string, typed: string): void { this.post({ do: "AnswerInWords", block: placeOf(question), typed }, question) }
+    derives(question: string, row: string): void { this.writes(question, row) } // the server adds it
     way(item: string): "" | "sending" | "sent" {
         if (this.engine.outbox.has(this.page.lesson, item)) return "sending"
         return this.engine.seat?.place === "member" ? "sent" : ""

@@ -7,6 +7,7 @@ import { phrase } from "../core/words"
 import { given, type Notes } from "../lessons/notes"
 import type { Student } from "../lessons/student"
 import { ask } from "./asked"
+import { derive } from "./derivation"
 import { Comparison, elementOf, predict, predictionAt, type Prediction, type PredictionForm } from "./predictions"
 
 const SMALLEST = 0.75 // smallest scale of a formula that is too wide
@@ -63,6 +64,7 @@ export class StepView {
         if (block.kind === "text") this.links(element, place, block.links)
         else if (block.kind === "quiz" || block.kind === "number" || block.kind === "open")
             this.asked.set(place, ask(page, element, block, `${index}.${place}`, student))
+        else if (block.kind === "derivation") this.asked.set(place, derive(page, element, block, `${index}.${place}`, student))
         else if (prediction?.step === index && prediction.block === place) {
             const before = this.form
             before?.board?.remove()

@@ -19,7 +19,16 @@ from onpath.lessons.action_words import script_words
 from onpath.lessons.concept_test.concept_test import BEFORE, questions
 from onpath.lessons.course import BUILT_IN, Course
 from onpath.lessons.progress import Truth
-from onpath.lessons.schema import Block, Choice, NumberQuestion, OpenQuestion, Quiz, Sketch, Text
+from onpath.lessons.schema import (
+    Block,
+    Choice,
+    Derivation,
+    NumberQuestion,
+    OpenQuestion,
+    Quiz,
+    Sketch,
+    Text,
+)
 from onpath.lessons.task_schema import Task
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.systems.catalogue import FIVE_BAR
@@ -73,6 +82,9 @@ def texts(block: Block) -> list[str]:
         return [block.question, block.usual, block.answer, block.ask, "data:image/svg+xml"]
     if isinstance(block, NumberQuestion | OpenQuestion):
         return [block.question, block.answer]
+    if isinstance(block, Derivation):
+        lines = [text for line in block.line for text in (line.question, line.answer)]
+        return [block.question, block.answer, *lines]
     assert isinstance(block, Choice | Quiz)
     told = [text for option in block.options for text in (option.text, option.answer)]
     asks = [block.ask] if isinstance(block, Choice) else []
@@ -133,6 +145,10 @@ def test_a_worksheet_has_every_question_once_and_only_its_key_the_answers(
             assert block.passed in answers[each] and block.passed not in page
         elif isinstance(block, NumberQuestion | OpenQuestion):
             assert block.answer in answers[each] and block.answer not in page
+        elif isinstance(block, Derivation):
+            assert all(line.question in sheet[each] for line in block.line)
+            assert all(line.answer in answers[each] for line in block.line)
+            assert not any(line.answer in page for line in block.line)
         else:
             assert isinstance(block, Choice | Quiz)
             (right,) = [option for option in block.options if option.right]

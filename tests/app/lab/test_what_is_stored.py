@@ -19,7 +19,7 @@ from onpath.app.storage.lab_state import keep
 from onpath.app.storage.records import LARGEST
 from onpath.lessons.course import Course, read_course
 from onpath.lessons.progress import read_progress
-from onpath.lessons.schema import Lesson, NumberQuestion, OpenQuestion, Quiz
+from onpath.lessons.schema import Derivation, Lesson, NumberQuestion, OpenQuestion, Quiz
 from onpath.models.closed_loop.lab_settings import SETTINGS
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.control.settable import specs
@@ -153,7 +153,7 @@ def known_keys(lesson: Lesson) -> dict[str, set[str]]:
         "hints": tasks,
         "quiz": blocks(Quiz),
         "numbers": blocks(NumberQuestion),
-        "written": blocks(OpenQuestion),
+        "written": blocks(OpenQuestion) | blocks(Derivation),
         "twice": blocks(Quiz) | blocks(NumberQuestion),
         "asked_again": set(),
         "second": set(),

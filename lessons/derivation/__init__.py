@@ -1,0 +1,1 @@
+"""Derivations by hand: chains of lines, each a typed number or formula that is checked."""
