@@ -33,6 +33,9 @@ class Process:
         self.records = Records(file_url(file))
         self.lost: list[str] = []
         self.keeper = WriteBehind(self.records, interval=60.0, lost=self._lose)
+        begun = f"{id(self):x}"[-12:]
+        self.keeper.submit(begun, dict)
+        wait_for(lambda: self.keeper.written(begun), 10.0)  # its thread now waits for an interval
         self.registry = LabRegistry(
             SimulationThread(),
             lambda: Lab(loop_cache()),
