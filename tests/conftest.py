@@ -16,8 +16,8 @@ from onpath.models.systems.five_bar import five_bar, load_links
 from tests.support.rig import Rig
 
 # How long an example takes is not what is tested. `make test` gives the same verdict every time;
-# `make fuzz` searches at random, and what it finds becomes an @example.
-settings.register_profile("laws", deadline=None, derandomize=True)
+# `make fuzz` searches longer and at random, and what it finds becomes an @example.
+settings.register_profile("laws", deadline=None, derandomize=True, max_examples=40)
 settings.register_profile("fuzz", deadline=None, print_blob=True)
 settings.load_profile("laws")
 signal.signal(signal.SIGINT, signal.default_int_handler)  # servers started from here heed it, too,
