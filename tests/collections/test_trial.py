@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -9,10 +10,11 @@ from pathlib import Path
 import pytest
 
 from tests.collections.trial import verdict_of
-from tests.support.robot_files import HEAVY, PLANAR, SEVEN, Link, urdf
+from tests.support.robot_files import HEAVY, LEG, PLANAR, SEVEN, Link, urdf
 
-NARROW = [replace(link, limit=0.7 if i == 5 else link.limit) for i, link in enumerate(SEVEN)]
-WEAK = [replace(link, effort=0.1) for link in SEVEN]
+FIVE = SEVEN[:5]
+WEAK = [replace(link, effort=0.1) for link in FIVE]
+NARROW = [replace(link, limit=0.7 if i == 4 else link.limit) for i, link in enumerate(FIVE)]
 
 
 def scaled(link: Link, factor: float) -> Link:
@@ -23,14 +25,17 @@ def scaled(link: Link, factor: float) -> Link:
 
 ARMS = {
     "seven": urdf("seven", SEVEN),
-    "narrow": urdf("narrow", NARROW),
-    "planar": urdf("planar", PLANAR),
-    "two": urdf("two", PLANAR[:2]),
-    "on the floor": urdf("floor", [replace(SEVEN[0], at=(0, 0, 0)), *SEVEN[1:]]),
     "six joints": urdf("six", SEVEN[:6]),
-    "five joints": urdf("five", SEVEN[:5]),
-    "small": urdf("small", [scaled(link, 0.15) for link in SEVEN]),
-    "large": urdf("large", [replace(scaled(link, 2.0), effort=200.0) for link in SEVEN]),
+    "five joints": urdf("five", FIVE),
+    "narrow": urdf("narrow", NARROW),
+    "small": urdf("small", [scaled(link, 0.3) for link in FIVE]),
+    "large": urdf("large", [replace(scaled(link, 2.0), effort=200.0) for link in FIVE]),
+    "leg": urdf("leg", LEG),
+    "on the floor": urdf("floor", [replace(PLANAR[0], at=(0, 0, 0)), *PLANAR[1:]]),
+    "without masses": re.sub("<inertial>.*?</inertial>", "", urdf("bare", PLANAR)),
+    "without limits": re.sub("<limit [^>]*>", "", urdf("free", PLANAR)),
+    "impossible inertias": re.sub('ixx="[^"]*"', 'ixx="-0.01"', urdf("strange", PLANAR)),
+    "two": urdf("two", PLANAR[:2]),
 }
 
 

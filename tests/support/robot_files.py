@@ -75,6 +75,13 @@ HEAVY = (
 )
 """Of the size of a large industrial robot; not written, but for tests."""
 
+LEG = (
+    Link((1, 0, 0), (0.2, 0.1, 0), (0, 0.08, 0), 1.0, 0.8, 40.0, 0.1, 0.03, 0.01),
+    Link((0, 1, 0), (0, 0.08, 0), (0, 0, -0.25), 1.0, 1.5, 40.0, 0.1, 0.03, 0.01),
+    Link((0, 1, 0), (0, 0, -0.25), (0, 0, -0.25), 0.3, 2.5, 40.0, 0.1, 0.02, 0.01),
+)
+"""A leg of a quadruped whose root is its trunk; not written, but for tests."""
+
 
 def urdf(name: str, links: Sequence[Link], meshes: str = "") -> str:
     """The file of an arm whose links are rods; the tip is the link "tip".

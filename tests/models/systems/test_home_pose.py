@@ -21,14 +21,7 @@ from onpath.models.studies.path_text import curve_from_text
 from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
 from onpath.models.systems.home_pose import length_of
 from onpath.models.systems.robot_file import RobotFile, read_robot
-from tests.support.robot_files import HEAVY, PLANAR, SEVEN, Link, urdf
-
-LEG = (
-    Link((1, 0, 0), (0.2, 0.1, 0), (0, 0.08, 0), 1.0, 0.8, 40.0, 0.1, 0.03, 0.01),
-    Link((0, 1, 0), (0, 0.08, 0), (0, 0, -0.25), 1.0, 1.5, 40.0, 0.1, 0.03, 0.01),
-    Link((0, 1, 0), (0, 0, -0.25), (0, 0, -0.25), 0.3, 2.5, 40.0, 0.1, 0.02, 0.01),
-)
-"""A leg of a quadruped whose root is its trunk."""
+from tests.support.robot_files import HEAVY, LEG, PLANAR, SEVEN, Link, urdf
 
 
 def read(folder: Path, links: tuple[Link, ...], text: str = "", **options: object) -> RobotFile:
