@@ -1930,6 +1930,7 @@ robot_file-shape = eine Form braucht eine Größe, und ein Netz eine Datei
 robot_file-no_xacro = { $file } ist eine xacro-Datei, und die braucht xacro: pip install "onpath[xacro]"
 robot_file-xacro_ended = xacro wurde beim Auswerten von { $file } beendet: Es brauchte zu lange oder zu viel Speicher
 robot_file-xacro_refused = xacro kann { $file } nicht auswerten: { $reason }
+robot_file-xacro_package = { $file } braucht das Paket { $package }, das weder bei der Datei liegt noch angegeben ist: { $line }
 robot_file-xacro_argument = { $file } verlangt ein Argument und gibt ihm keinen Wert: Schreiben Sie <xacro:arg name="{ $name }" default="…"/> unter <robot>, mit dem gewünschten Wert
 robot_file-xacro_ran = { $file } ist ein Programm: xacro hat seine Ausdrücke ausgeführt, in einem Prozess mit Grenzen
 robot_file-include = { $file } lässt sich nicht einbinden: Es ist keine .xml-Datei im Ordner oder Paket des Roboters (--package NAME=ORDNER; in Python packages=…), oder sie wird zweimal eingebunden

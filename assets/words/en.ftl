@@ -1513,6 +1513,7 @@ robot_file-shape = a shape needs a size, and a mesh a file
 robot_file-no_xacro = { $file } is a xacro file, which needs xacro: pip install "onpath[xacro]"
 robot_file-xacro_ended = xacro was ended while it expanded { $file }: it took too long, or needed too much memory
 robot_file-xacro_refused = xacro cannot expand { $file }: { $reason }
+robot_file-xacro_package = { $file } needs the package { $package }, which is neither around the file nor given: { $line }
 robot_file-xacro_argument = { $file } asks for an argument, and gives it no value: write <xacro:arg name="{ $name }" default="…"/> below <robot>, with the value that you want
 robot_file-xacro_ran = { $file } is a program: xacro has run its expressions, in a process with limits
 robot_file-include = { $file } cannot be included: it is not an .xml file in the folder or package of the robot (--package NAME=FOLDER; in Python, packages=…), or it is included twice

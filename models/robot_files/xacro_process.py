@@ -8,6 +8,7 @@ packages given, and Python's own modules, and do nothing else to the system.
 from __future__ import annotations
 
 import os
+import shlex
 import sys
 from collections.abc import Mapping
 from functools import partial
@@ -40,10 +41,11 @@ class XacroJob(msgspec.Struct, frozen=True):
 
 
 class XacroAnswer(msgspec.Struct, frozen=True):
-    """The expanded file, or why there is none."""
+    """The expanded file, or why there is none, and a package that is not known."""
 
     text: str = ""
     fault: str = ""
+    package: str = ""
 
 
 def expanded(file: Path, packages: Mapping[str, Path]) -> bytes:
@@ -62,6 +64,10 @@ def expanded(file: Path, packages: Mapping[str, Path]) -> bytes:
         )
     except (ProcessEnded, msgspec.MsgspecError):
         raise CodedError("robot_file.xacro_ended", file=file.name) from None
+    if found.package:
+        line = f"--package {shlex.quote(found.package)}=FOLDER"
+        package = shown(found.package)
+        raise CodedError("robot_file.xacro_package", file=file.name, package=package, line=line)
     if found.fault or len(found.text) > LARGEST_FILE:
         if found.fault.startswith(UNDEFINED):
             name = shown(found.fault.removeprefix(UNDEFINED).strip())
@@ -74,13 +80,13 @@ def expanded(file: Path, packages: Mapping[str, Path]) -> bytes:
 def _answer(job: bytes) -> bytes:
     asked = msgspec.msgpack.decode(job, type=XacroJob)
     packages = {name: Path(folder) for name, folder in asked.packages.items()}
-    folders = MeshFolders(Path(asked.file), packages, ())
+    folders, missing = MeshFolders(Path(asked.file), packages, ()), list[str]()
     try:
         xacro: Any = import_module("xacro")
         arguments: Any = import_module("xacro.substitution_args")
         for module in ("yaml", "xml.dom.expatbuilder", "encodings.idna", "glob"):
             import_module(module)
-        find = partial(_found, folders)
+        find = partial(_found, folders, missing)
         arguments._eval_find = arguments._eval_dict["find"] = find
         os.environ.clear()
         guard(folders.allowed)
@@ -89,14 +95,16 @@ def _answer(job: bytes) -> bytes:
     except SystemExit:
         answer = XacroAnswer(fault="SystemExit")
     except Exception as error:  # of a user's code
-        answer = XacroAnswer(fault=str(error) or type(error).__name__)
+        fault = str(error) or type(error).__name__
+        answer = XacroAnswer(fault=fault, package=missing[0] if missing else "")
     return msgspec.msgpack.encode(answer)
 
 
-def _found(folders: MeshFolders, package: str) -> str:
+def _found(folders: MeshFolders, missing: list[str], package: str) -> str:
     folder = folders.folder(package)
     if folder is None:
-        raise ValueError(f"there is no package {package}: --package {package}=FOLDER")
+        missing.append(package)
+        raise ValueError(f"there is no package {package}")
     return str(folder)
 
 

@@ -205,14 +205,18 @@ def output_axes(chain: Chain) -> tuple[Point, ...]:
     """Directions of the outputs: two in the plane of the tip's motion, or x, y and z.
 
     The tip moves in a plane if the joints that turn have parallel axes, and those that slide are
-    across them. Of a plane that is not horizontal, the first direction is horizontal.
+    across them, but for a last one that turns the tip on the spot. Of a plane that is not
+    horizontal, the first direction is horizontal.
     """
+    joints = chain.joints
+    if not joints[-1].slides and math.hypot(*chain.tip[:2]) < 1e-6:
+        joints = joints[:-1]
     frames = chain_frames(chain, ca.SX(ca.DM.zeros(chain.n)))
     lines: list[Array] = [
         ca.evalf(ca.densify(rotation[:, 2])).full()[:, 0] for rotation in frames.rotations
     ]
-    turning = [a for a, joint in zip(lines, chain.joints, strict=True) if not joint.slides]
-    sliding = [a for a, joint in zip(lines, chain.joints, strict=True) if joint.slides]
+    turning = [a for a, joint in zip(lines, joints, strict=False) if not joint.slides]
+    sliding = [a for a, joint in zip(lines, joints, strict=False) if joint.slides]
     space = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
     if not turning and len(sliding) < 2:
         return space

@@ -93,6 +93,15 @@ def test_two_joints_draw_in_their_plane(tmp_path: Path) -> None:
     assert found.circle > 0.02
 
 
+def test_a_last_joint_that_turns_the_tip_on_the_spot_leaves_it_in_its_plane(
+    tmp_path: Path,
+) -> None:
+    roll = replace(PLANAR[2], axis=(1, 0, 0), at=PLANAR[1].end, end=PLANAR[2].end)
+    found = read(tmp_path, (*PLANAR[:2], roll))
+    made = found.entry.make(found.entry.parameters())
+    assert (made.system.p, made.system.n) == (2, 3)
+
+
 WRIST = tuple(replace(each, at=(0, 0, 0)) for each in SEVEN[:3])
 
 
