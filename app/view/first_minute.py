@@ -23,8 +23,7 @@ class Invitation:
     Attributes:
         name: in the message catalogue.
         is_followed: whether it has been followed, according to a snapshot.
-        act: the command of its button, as JSON; None if it is followed in the scene itself, or by
-            opening the first lesson.
+        act: the command of its button, as JSON; None if it is followed elsewhere on the page.
         explained: name of the sentence that takes its place while it is being followed, and for
             `READ` afterwards; empty: there is none.
     """
@@ -37,8 +36,8 @@ class Invitation:
 
 LAST = "lesson"
 INVITATIONS = (
-    Invitation("hold", lambda shown: shown.held, {"do": "Hold"}),
-    Invitation("let_go", lambda shown: not shown.held, {"do": "Hold"}),
+    Invitation("hold", lambda shown: shown.held),
+    Invitation("let_go", lambda shown: not shown.held),
     Invitation("pull", lambda shown: shown.grabbed is not None, explained="pulled"),
     Invitation("bend", lambda shown: shown.edit.name in ("edited", "drawn")),
     Invitation(LAST, lambda shown: shown.key.in_lesson),

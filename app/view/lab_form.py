@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Literal
 
+from msgspec import structs
+
 from onpath.app.channel.form_messages import (
     FieldValue,
     FormField,
@@ -68,7 +70,7 @@ PULLS = ("path's plane", "horizontal plane")
 NO_STEP = FormMessage(place="step", groups=())
 GROUPS: Mapping[str, Literal["first", "deeper"]] = {
     "setup": "first",
-    **dict.fromkeys(("hand", "gains", "along", "points", "reality", "view", "robot"), "deeper"),
+    **dict.fromkeys(("hand", "gains", "along", "reality", "view", "robot"), "deeper"),
 }
 """Groups of the form in their order, with their levels."""
 GROUP_OF = {
@@ -84,7 +86,7 @@ GROUP_OF_OTHERS = {
     **dict.fromkeys(("pulse", "reset", "start_on_path", "show_start", "wall_forces"), "hand"),
     **dict.fromkeys(("alpha_note", "deflection", "pull", "show_tips"), "robot"),
     **dict.fromkeys(("poles", "pole_plane", "defaults"), "gains"),
-    **dict.fromkeys(("add", "remove", "point", "point_z1", "point_z2", "least_rank"), "points"),
+    **dict.fromkeys(("add", "remove", "point", "point_z1", "point_z2", "least_rank"), "along"),
     "identify": "reality",
     **dict.fromkeys((*DRAWINGS, "tube_sizes", "rank_scale", "show_zone", "view"), "view"),
 }
@@ -92,7 +94,7 @@ GROUP_OF_OTHERS = {
 FIRST = (
     *("robot", "path", "draw", "file", "undo", "redo", "speed", "pace"),
     *(f"{part}{side}" for side in SIDES for part in ("", "typed_", "about_")),
-    *("laws", "compare", "keep"),
+    *("compare", "keep"),
 )
 """Fields that are seen at once, in their order."""
 SECTIONS = {
@@ -330,7 +332,6 @@ def _fields(lab: _Lab, marks: Mapping[str, FieldValue], words: Words) -> dict[st
         _button("redo", words("design.redo"), Redo(), needs="can_redo"),
         FormField(name="pace", kind="note", label=""),
         *_law_fields(robot, chosen, words),
-        _button("laws", words("laws.about")),
         _button("compare", words("setup.compare")),
         _button("keep", words("keep.title")),
     ]
@@ -406,8 +407,12 @@ def _switch(name: str, label: str, help: str) -> FormField:
 
 def _point_fields(robot: Robot, count: int, words: Words) -> Iterator[FormField]:
     """What adds, removes and moves control points of the path."""
-    yield _button("add", words("design.add"), AddPoint())
-    yield _button("remove", words("design.remove"), RemovePoint())
+    section = words("form.section_points")
+    for button in (
+        _button("add", words("design.add"), AddPoint()),
+        _button("remove", words("design.remove"), RemovePoint()),
+    ):
+        yield structs.replace(button, section=section)
     numbers = [FormOption(value=i + 1, label=str(i + 1)) for i in range(count)]
     yield FormField(
         name="point",
@@ -415,6 +420,7 @@ def _point_fields(robot: Robot, count: int, words: Words) -> Iterator[FormField]
         label=words("design.selected"),
         help=words("design.arrows"),
         options=(FormOption(value=0, label=words("design.no_point")), *numbers),
+        section=section,
     )
     for name, axis in zip(("point_z1", "point_z2"), robot.frame.axes, strict=True):
         yield FormField(
@@ -426,8 +432,9 @@ def _point_fields(robot: Robot, count: int, words: Words) -> Iterator[FormField]
             step=5e-4,
             factor=1e3,
             needs=((FormNeed("point"),),),
+            section=section,
         )
-    yield FormField(name="least_rank", kind="note", label="")
+    yield FormField(name="least_rank", kind="note", label="", section=section)
 
 
 def _drawing_fields(words: Words) -> Iterator[FormField]:

@@ -33,8 +33,6 @@ _PLAIN = (
     *(
         "page.scene",
         "stage.paused",
-        "invite.hold_button",
-        "invite.let_go_button",
         "invite.lesson_button",
     ),
     *SHELL,

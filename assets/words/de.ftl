@@ -591,10 +591,8 @@ stage-building = { $robot }: das Bild wird aufgebaut …
 stage-paused = Die Zeit steht still
 stage-past = Rückblick auf { $time } s
 
-invite-hold = Zwei gleiche Roboter folgen einer Bahn. Was geschieht, wenn ihnen etwas im Weg steht?
-invite-hold_button = Halte sie fest
-invite-let_go = Den einen reißt seine Uhr von der Bahn; der andere wartet, so lange es dauert.
-invite-let_go_button = Lass sie los
+invite-hold = Zwei gleiche Roboter folgen einer Bahn. Was geschieht, wenn ihnen etwas im Weg steht? Drücke auf „Beide festhalten“.
+invite-let_go = Den einen reißt seine Uhr von der Bahn; der andere wartet, so lange es dauert. Lass jetzt beide los.
 invite-pull = Sei nun selbst das Hindernis: Drücke auf die Spitze eines Roboters und halte still, mit Maus, Finger oder den Tasten A, D, W, S. Eine Hand wirkt auf beide.
 invite-pulled = Hältst du still, wartet der Bahnfolger an deiner Hand, und den Nachläufer zieht seine Uhr fort. Ziehst du nach außen, verlassen beide die Bahn: Eine solche Hand hält sie nicht auf.
 invite-bend = Verbiege die Bahn: Ziehe an einem ihrer grauen Punkte.
@@ -1709,8 +1707,7 @@ form-use = Verwenden
 form-group_setup = Aufbau
 form-group_hand = Hand und Bremse
 form-group_gains = Verstärkungen
-form-group_along = Bewegung längs der Bahn
-form-group_points = Kontrollpunkte
+form-group_along = Bahn und Bewegung
 form-group_reality = Wirklichkeit
 form-group_view = Ansicht
 form-group_robot = Dieser Roboter
@@ -1720,6 +1717,7 @@ form-section_sensors = Sensoren
 form-section_friction = Reibung
 form-section_computer = Rechner
 form-section_load = Last
+form-section_points = Kontrollpunkte
 form-section_model = Fehler des Modells
 
 ## Eine Abbildung ohne Server

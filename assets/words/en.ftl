@@ -506,10 +506,8 @@ stage-building = { $robot }: the picture is being built …
 stage-paused = Time stands still
 stage-past = Looking back at { $time } s
 
-invite-hold = Two identical robots follow the same path. What if something stands in their way?
-invite-hold_button = Hold them back
-invite-let_go = One is torn off the path by its clock; the other waits for as long as it takes.
-invite-let_go_button = Let them go
+invite-hold = Two identical robots follow the same path. What if something stands in their way? Press “Hold both back”.
+invite-let_go = One is torn off the path by its clock; the other waits for as long as it takes. Now let both go.
 invite-pull = Now be the obstacle yourself: press on a robot’s tip and keep still, with the mouse, a finger, or the keys A, D, W, S. One hand acts on both.
 invite-pulled = Held still, the follower waits at your hand, and the clock drags the tracker on. Pulled outwards, both leave the path: such a hand does not hold them back.
 invite-bend = Bend the path: drag one of its grey points.
@@ -1292,8 +1290,7 @@ form-use = Use
 form-group_setup = Set-up
 form-group_hand = Hand and brake
 form-group_gains = Gains
-form-group_along = Motion along the path
-form-group_points = Control points
+form-group_along = Path and motion
 form-group_reality = Reality
 form-group_view = View
 form-group_robot = This robot
@@ -1303,6 +1300,7 @@ form-section_sensors = Sensors
 form-section_friction = Friction
 form-section_computer = Computer
 form-section_load = Load
+form-section_points = Control points
 form-section_model = Errors of the model
 
 ## A figure without a server

@@ -73,12 +73,15 @@ def test_nothing_is_seen_of_the_viewer_s_own_page(browser: Browser, server: LabS
 def test_a_newcomer_is_invited_once(browser: Browser, server: LabServer) -> None:
     tab = visit(browser, server, newcomer=True)
     invitation, spoken = tab.page.locator("#op-invitation"), tab.page.locator("#op-voice")
-    tab.button("Hold them back").click()
+    expect(tab.button("Hold both back")).to_have_class(re.compile("invited"))
+    tab.button("Hold both back").click()
     wait_for(lambda: len(tab.simulation.forces.held) == 2)
     expect(invitation).to_be_hidden()
+    expect(tab.button("Let both go")).not_to_have_class(re.compile("invited"))
     expect(spoken).to_contain_text(re.compile(r"Held back\. Tracker: torn off: up to \d+ mm"))
     expect(spoken).to_contain_text(re.compile(r"Follower: waits: up to \d mm"))
-    tab.button("Let them go").click()
+    expect(tab.button("Let both go")).to_have_class(re.compile("invited"))
+    tab.button("Let both go").click()
     wait_for(lambda: not tab.simulation.forces.held)
     expect(invitation).to_contain_text("keep still")
     tab.page.keyboard.press("d")
@@ -101,13 +104,10 @@ def test_a_newcomer_is_invited_once(browser: Browser, server: LabServer) -> None
 def test_the_introduction_is_followed_with_keys(browser: Browser, server: LabServer) -> None:
     tab = visit(browser, server, newcomer=True)
     page = tab.page
-    tab.button("Hold them back").focus()
-    page.keyboard.press("Enter")
+    tab.button("Skip the introduction").focus()
+    page.keyboard.press("h")
     wait_for(lambda: len(tab.simulation.forces.held) == 2)
-    expect(tab.button("Let them go")).to_be_focused()
-    page.keyboard.press("Enter")
-    wait_for(lambda: not tab.simulation.forces.held)
-    expect(page.locator("#op-invited")).to_be_focused()  # it has no button
+    expect(page.locator("#op-invited")).to_be_focused()
     expect(page.locator("#op-invited")).to_have_attribute("aria-live", "polite")
     page.context.close()
 

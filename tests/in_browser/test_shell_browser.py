@@ -17,7 +17,7 @@ pytestmark = pytest.mark.thorough
 
 SHEETS = (
     *("Lessons", "Help and keys", "Language, display"),
-    *("About the laws", "Compare laws…", "Keep and share", "File…"),
+    *("Compare laws…", "Keep and share", "File…"),
 )
 FOREIGN = """() => [...document.querySelectorAll("#root *")].filter(each =>
     each.matches("button, input, select, textarea, a, [tabindex='0']")

@@ -91,7 +91,7 @@ SHOWN = """() => {
 }"""
 SHEETS = (
     *("lesson.lessons", "controls.help", "display.title", "search.title"),
-    *("laws.about", "setup.compare", "keep.title", "setup.file"),
+    *("setup.compare", "keep.title", "setup.file"),
 )
 """Names of the buttons that open them."""
 
@@ -129,7 +129,7 @@ def test_nothing_is_outside_cut_covered_or_too_small(
     page.set_viewport_size(WIDE)
     used.ask(c.SetRunning(False), c.SetLanguage(language))
     words = Words(language)
-    page.get_by_role("button", name=words("laws.about"), exact=True).wait_for()
+    page.get_by_role("button", name=words("setup.compare"), exact=True).wait_for()
     assert found(used, list(SIZES), touch) == []
     for name in SHEETS:
         page.set_viewport_size(WIDE)

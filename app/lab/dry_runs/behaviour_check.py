@@ -39,7 +39,7 @@ REFUSALS = {"say.refused", "say.no_further"}
 """Keys of the messages with which a path is refused."""
 CONTROLS = {
     "hold": "run.hold_both",
-    "editor": "form.group_points",
+    "editor": "form.section_points",
     "gains": "form.group_gains",
     "flexible": "form.group_robot",
     "identify": "gains.identify",

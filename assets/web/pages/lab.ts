@@ -29,6 +29,7 @@ const CHECKED = 250 // [ms] between checks of what viser has put into the page
 const RATES = [0.125, 0.25, 0.5, 1, 2, 4]
 const RESTS = 300 // [ms] for which the canvas keeps its size, until the lab is told of it
 const NUMBERS = 100 // [ms] between changes of the large numbers
+const INVITES = ["hold", "let_go"] // invitations to press the brake
 const LARGER = 1.7 // scale of charts and lenses for a projector
 const UPRIGHT = matchMedia("(width <= 36em), (aspect-ratio <= 4/5)")
 const PHONE = matchMedia("(width <= 36em)")
@@ -73,7 +74,7 @@ class Face {
         this.stage = new OverStage(engine, texts, this.overlay.element, this.sketch.element)
         Object.assign(this.undo, { type: "button", textContent: phrase(texts, "past.undo"), title: phrase(texts, "past.undo_hint") })
         this.undo.addEventListener("click", () => engine.send({ do: "UndoGoOn" }))
-        this.transport.element.append(this.undo, this.strip.menu.element)
+        this.transport.element.append(this.undo, this.strip.menu.element, this.transport.step)
         const head = made("div", "head", this.transport.element, this.clock)
         this.column = new Column(texts, engine, () => true, symbol => this.light(symbol), signal)
         this.element = made("section", "", head, made("div", "numbers", ...this.readings), this.strip.element, this.column.beneath)
@@ -201,6 +202,7 @@ class Face {
         })
         this.undo.hidden = !engine.lab!.undo
         transport.element.classList.toggle("looks", !engine.lab!.own)
+        transport.invited = INVITES.includes(engine.lab!.said.invitation)
         this.enlarge(engine.lab!.presenting)
         if (this.klass) this.showClass()
         this.read = 0

@@ -96,7 +96,9 @@ export class Shell {
             file: () => Promise.resolve(pathFromFile(texts, engine.files, this.chosen, this.dropped)),
             compare: async () => {
                 const data = await engine.ask("compare")
-                return (this.compare ??= new LawComparison(texts, { send, get laws() { return engine.lab!.laws } })).open(data)
+                return (this.compare ??= new LawComparison(texts, {
+                    send, about: () => void this.open("laws"), get laws() { return engine.lab!.laws },
+                })).open(data)
             },
             class: () => Promise.resolve(this.takeSeat("class")),
             teach: () => Promise.resolve(this.takeSeat("teach")),

@@ -15,6 +15,8 @@ interface Comparing {
     /** The laws of the two robots now. */
     readonly laws: readonly string[]
     send(message: Command | PageMessage): void
+    /** Show what there is to say about the laws. */
+    about(): void
 }
 
 /** The sheet, which keeps its last results while it is closed. */
@@ -36,7 +38,8 @@ export class LawComparison {
         this.state.setAttribute("role", "status")
         this.start = pressed("main", phrase(texts, "compare.run"), () => this.run())
         const what = made("label", "", made("span", "", phrase(texts, "compare.obstruction")), this.what)
-        this.sheet.body.append(made("p", "", phrase(texts, "compare.text")), this.laws, made("div", "row", what, this.start), this.state, this.result)
+        const about = pressed("", phrase(texts, "laws.about"), () => host.about())
+        this.sheet.body.append(made("p", "", phrase(texts, "compare.text")), this.laws, made("div", "row", what, this.start, about), this.state, this.result)
     }
 
     /** Open it with what can be compared now; the last results are still there. */

@@ -1,7 +1,8 @@
-// The menu of the plots: which quantities are shown under the stage.
+// The menu of the plots: which quantities are shown under the stage, and their table.
 
 import { made } from "../core/dom"
 import { phrase, type Texts } from "../core/words"
+import { pressed } from "./sheet"
 
 export class PlotMenu {
     private readonly button = made("button", "")
@@ -9,11 +10,17 @@ export class PlotMenu {
     /** The button that opens it, and its list. */
     readonly element = made("div", "plots", this.button, this.list)
 
-    /** `choose` is called with the name of a row, and whether it is wanted. */
-    constructor(texts: Texts, private readonly choose: (name: string, on: boolean) => void) {
+    private readonly table: HTMLButtonElement
+
+    /** `choose` is called with the name of a row, and whether it is wanted; `tell` shows the curves as a table. */
+    constructor(texts: Texts, private readonly choose: (name: string, on: boolean) => void, tell: () => void) {
         const { button, list } = this
         Object.assign(button, { type: "button", textContent: phrase(texts, "plots.menu"), title: phrase(texts, "plots.menu_hint") })
         Object.assign(list, { popover: "auto", role: "group", ariaLabel: phrase(texts, "plots.menu") })
+        this.table = pressed("", phrase(texts, "chart.table"), () => {
+            list.hidePopover()
+            tell()
+        })
         button.ariaHasPopup = "true"
         button.ariaExpanded = "false"
         button.popoverTargetElement = list
@@ -29,7 +36,7 @@ export class PlotMenu {
             Object.assign(box, { type: "checkbox", checked: on, value: name })
             box.addEventListener("change", () => this.choose(name, box.checked))
             return made("label", "", box, menu)
-        }))
+        }), this.table)
         if (focused !== null) list.querySelector<HTMLInputElement>(`input[value="${focused}"]`)?.focus()
     }
 

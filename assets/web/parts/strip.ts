@@ -45,10 +45,13 @@ export class Strip {
     constructor(private readonly texts: Texts, private readonly engine: Engine, ended?: AbortSignal, private readonly kept = "") {
         const chosen = kept ? recalled(kept) : null
         this.chosen = Array.isArray(chosen) ? chosen.filter(each => typeof each === "string") : []
-        this.menu = new PlotMenu(texts, (name, on) => this.choose(name, on))
         const columns = () => this.rows.flatMap(({ chart, data }) => chart.lines.map(line => ({ ...line, name: this.heading(line.name, data.label), unit: data.unit })))
         const table = tableOf(texts, () => phrase(texts, "chart.title"), columns, () => spansOf(this.times, this.kinds))
         this.element = made("div", "strip", this.stack, table)
+        this.menu = new PlotMenu(texts, (name, on) => this.choose(name, on), () => {
+            table.open = true
+            table.querySelector("summary")!.focus()
+        })
         engine.on(change => {
             this.stale = true
             if (change === "history") this.forgets = true

@@ -14,7 +14,7 @@ export interface TableColumn extends Curve {
 const ROWS = 60 // number of rows, about
 
 /** A table that is made when it is opened. */
-export function tableOf(texts: Texts, label: () => string, columns: () => readonly TableColumn[], spans: () => readonly Span[]): HTMLElement {
+export function tableOf(texts: Texts, label: () => string, columns: () => readonly TableColumn[], spans: () => readonly Span[]): HTMLDetailsElement {
     const body = made("div", "wide")
     body.tabIndex = 0 // so that keys scroll it
     const details = made("details", "table", made("summary", "", phrase(texts, "chart.table")), body)

@@ -11,6 +11,8 @@ export class Transport {
     readonly element: HTMLElement
     /** The brake; while one looks at the past, the buttons of the past stand in its place. */
     readonly brake: HTMLElement
+    /** The button for one step, which is there while time stands still. */
+    readonly step: HTMLButtonElement
     private readonly held: HTMLButtonElement
     private readonly run: HTMLButtonElement
     private readonly rate: HTMLSelectElement
@@ -31,9 +33,10 @@ export class Transport {
         this.brakes(this.held)
         this.run = this.button("", ["run.run", "run.pause"], "run.run_hint", () => this.toggleRun())
         this.rate = this.rates()
+        this.step = this.button("step", ["run.step"], "key.right", () => this.engine.act({ do: "step" }))
         const every: Record<string, HTMLElement[]> = {
             run: [this.run],
-            step: [this.button("", ["run.step"], "key.right", () => this.engine.act({ do: "step" }))],
+            step: [this.step],
             reset: [this.button("", ["run.reset"], "key.reset", () => this.engine.act({ do: "reset" }))],
         }
         const buttons = Object.keys(every).filter(name => offered.includes(name)).flatMap(name => every[name]!)
@@ -50,6 +53,11 @@ export class Transport {
     /** Whether something else is the main thing to press now. */
     set subdued(subdued: boolean) {
         this.held.classList.toggle("main", !subdued)
+    }
+
+    /** Whether one is asked to hold the robots back, or to let them go. */
+    set invited(invited: boolean) {
+        this.held.classList.toggle("invited", invited)
     }
 
     toggleHold(): void {
@@ -70,6 +78,7 @@ export class Transport {
         label(held, Number(state.held))
         held.ariaPressed = String(state.held)
         label(run, Number(state.running))
+        this.step.classList.toggle("off", state.running)
         const chosen = this.offers.indexOf(state.rate)
         if (rate.selectedIndex !== chosen) rate.selectedIndex = chosen
         past.hidden = state.past === null

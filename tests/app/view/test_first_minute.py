@@ -89,7 +89,7 @@ def test_the_button_of_an_invitation_has_a_command_that_the_lab_takes() -> None:
         act = new.part.shown.act if new.part.shown else None
         if act is not None:
             command_from(json.dumps(act))
-        assert (act is None) == (invitation.name in ("pull", "bend"))
+        assert (act is not None) == (invitation.name == "lesson")
 
 
 @pytest.mark.thorough
