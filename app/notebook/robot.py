@@ -51,14 +51,14 @@ def robot(
         OSError: the file cannot be read.
 
     Warns:
-        UserWarning: what is left out, such as a mesh that is not there; and what is guessed besides
-            the pose, with the option that settles it.
+        UserWarning: what is left out, such as a mesh that is not there; and what is guessed,
+            with the option that settles it.
 
     >>> import onpath
     >>> from onpath.assets import asset_path
     >>> arm = onpath.robot(asset_path("robots/planar_arm.urdf"), tip="tip")
     >>> arm.text.partition(" Largest")[0]
-    '3 joints, from planar_arm.urdf. Its tip follows circles of up to 100 mm about home.'
+    '3 joints, from planar_arm.urdf. Its tip follows circles of up to 94 mm about home.'
     >>> run = onpath.simulate(arm, hold=(1, 2), duration=2)
     >>> bool(run.distance.max() < 0.01)
     True

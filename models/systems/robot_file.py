@@ -131,6 +131,13 @@ def packaged_robot(name: str, label: str, text: str, pose: Mapping[str, float]) 
     return replace(chain_entry(source), picture=f"{name}.webp")
 
 
+def _kept_off(source: ChainSource) -> list[str]:
+    """A sentence on limit avoidance, if the robot has it."""
+    if not source.redundant or not source.chain.limited:
+        return []
+    return ["Its joints keep off their stops where others can move instead, while the tip stays."]
+
+
 def _limits_of(chain: Chain) -> list[str]:
     """A sentence with the torque limits that the file states, if it states any."""
     limits = stated(chain)
@@ -173,7 +180,7 @@ def _made(file: Path, name: str, read: FileChain, pose: Mapping[str, float]) -> 
         least, found = f"{1e3 * LEAST_CIRCLE:.0f}", f"{1e3 * circle:.0f}"
         raise CodedError("robot_file.circle", least=least, circle=found)
     reach = f"Its tip follows circles of up to {1e3 * circle:.0f} mm about home."
-    text = " ".join([source.text, reach, *_limits_of(chain)])
+    text = " ".join([source.text, reach, *_kept_off(source), *_limits_of(chain)])
     guesses = (*read.guesses, *_pose_guess(chain, home, pose), *rotors, *_effort_guess(chain))
     radius = USUAL_RADIUS if circle >= USUAL_RADIUS else WITHIN * circle
     entry = chain_entry(replace(source, text=text, guesses=guesses, radius=round(radius, 3)))
