@@ -16,7 +16,6 @@ from onpath.models.arrays import Array
 from onpath.models.closed_loop.trajectory import Trajectory
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.frames import Frame
-from onpath.models.paths.spline_curves import SplineCurve
 
 REACHED = 1e-3  # [m] from the path, at which a robot begins to write
 WIDTH = 5.2  # [in], of one robot's picture
@@ -79,6 +78,4 @@ def _write(axis: Axes, run: Trajectory, frame: Frame, curve: Curve, colour: str)
 
 def _pen_down(curve: Curve, theta: Array, points: Array) -> Array:
     """The points, with NaN where the pen is raised."""
-    if not isinstance(curve, SplineCurve):
-        return points
     return np.where(curve.draws(theta)[:, None], points, np.nan)

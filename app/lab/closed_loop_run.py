@@ -264,7 +264,7 @@ class ClosedLoopRun:
         """
         assert self._inputs is not None
         before, parameters = rows[: fault[0]], self._inputs[0]
-        why = explained(fault[1], self.robot, self.log, self.law, before, parameters)
+        why = explained(fault[1], self.robot, self.log, self.law, before, parameters, curve)
         self.diverged = Diverged(why, time)
         good = np.flatnonzero(np.isfinite(rows[: fault[0]]).all(axis=1))
         if good.size:

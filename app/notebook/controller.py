@@ -22,7 +22,6 @@ from onpath.models.controller.functions import AT_FAULT
 from onpath.models.controller.steps import Steps
 from onpath.models.errors import CodedError
 from onpath.models.paths.curves import Curve
-from onpath.models.paths.spline_curves import SplineCurve
 from onpath.models.studies.experiments import check_path
 from onpath.models.systems.guessed_numbers import guess_sentences
 from onpath.models.systems.parameter_specs import out_of_range, unknown_name
@@ -192,7 +191,7 @@ class Controller:
     def draws(self) -> bool:
         """Whether the pen is down: not on a link between two strokes of a drawing."""
         curve = self._curve
-        return not isinstance(curve, SplineCurve) or bool(curve.draws(np.array(self.theta)))
+        return bool(curve.draws(np.array(self.theta)))
 
     @property
     def operations(self) -> int:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import floor, log10
+from math import ceil, floor, log10
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,6 +13,7 @@ from onpath.app.lab.snapshots.snapshot import PathSnapshot
 from onpath.app.scene.meshes import Mesh
 from onpath.app.scene.stage import Stage, add_copies
 from onpath.models.paths.curves import Curve
+from onpath.models.paths.spline_curves import SplineCurve
 from onpath.models.paths.tube import CurveFrames, curve_frames, offset, tube_width
 from onpath.models.systems.robots import Robot
 
@@ -26,7 +27,7 @@ LINES = 24
 OFFSETS, LEAST_STEP = 4, 0.005
 """Number of curves of constant ξ on each side of the path, and their least distance [m]."""
 ALONG = 120
-"""Points along the path."""
+"""Steps along a series; a drawing has at least `Curve.grid`."""
 AROUND = 16
 """Points around the tube of a space curve."""
 SPREAD = 0.97
@@ -88,10 +89,13 @@ def tube_shape(robot: Robot, path: PathSnapshot) -> TubeShape:
     curve = path.curve
     sizes = tube_sizes(curve)
     shown, across = sizes.shown, sizes.across
-    theta = np.linspace(-np.pi, np.pi, ALONG + 1)
+    along = ALONG
+    if isinstance(curve, SplineCurve):
+        along = LINES * ceil(curve.grid / LINES)
+    theta = np.linspace(-np.pi, np.pi, along + 1)
     frames = curve_frames(curve, theta)
     in_space = curve.dimension == 3
-    at = curve_frames(curve, theta[:: ALONG // LINES])
+    at = curve_frames(curve, theta[:: along // LINES])
 
     def placed(points: np.ndarray) -> np.ndarray:
         return robot.position(robot.frame.lift(points))

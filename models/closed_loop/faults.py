@@ -15,6 +15,8 @@ from onpath.models.control.laws.path_following import NEAR_TURN
 from onpath.models.control.laws.registry import law_named
 from onpath.models.errors import Message
 from onpath.models.layout import Layout
+from onpath.models.paths.curves import Curve
+from onpath.models.paths.spline_curves import SplineCurve
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.efforts import exceeded
 from onpath.models.systems.parameters import Parameters, declared, time_step
@@ -26,7 +28,8 @@ BEFORE = 0.1  # [s] before a fault in which its cause is looked for
 OFTEN = 0.5  # least share of that time with the motors at their limit
 WRONG = 0.01  # relative difference of a parameter of the controller's model that counts as wrong
 PULLED = 1.0  # [N]
-AWAY = 0.5  # [rad], from which on an error is large for a law that is meant for small ones
+AWAY = 0.5  # of the least radius on the way: larger errors are not small for a law made for those
+BETWEEN = 64  # points on that way
 
 
 def not_finite(law: str) -> Message:
@@ -60,7 +63,13 @@ def fault_in(
 
 
 def explained(
-    reason: Message, robot: Robot, log: Layout, law: str, rows: Array, parameters: Parameters
+    reason: Message,
+    robot: Robot,
+    log: Layout,
+    law: str,
+    rows: Array,
+    parameters: Parameters,
+    curve: Curve,
 ) -> Message:
     """The reason why a run has diverged, with likely causes and remedies, if any are known.
 
@@ -69,15 +78,16 @@ def explained(
         log: layout of the rows.
         law: name of the control law.
         rows: of the log until the fault, shape (ticks, log.size); those of the last 0.1 s count.
+        curve: the path.
     """
-    causes = _causes(robot, log, law, rows, parameters)
+    causes = _causes(robot, log, law, rows, parameters, curve)
     if not causes or reason.code in (TYPED_LAW.code, "stop.own_law"):
         return reason
     return Message("stop.because", {"reason": reason, "causes": tuple(causes)})
 
 
 def _causes(
-    robot: Robot, log: Layout, law: str, rows: Array, parameters: Parameters
+    robot: Robot, log: Layout, law: str, rows: Array, parameters: Parameters, curve: Curve
 ) -> list[Message]:
     """Possible causes, the most certain first."""
     causes, entry = list[Message](), ROBOTS.get(robot.name)
@@ -92,8 +102,8 @@ def _causes(
     last = rows[-max(1, round(BEFORE / time_step(parameters))) :]
     last = last[np.isfinite(last).all(1)]
     if len(last):
-        causes += _large_error(law, log.unpack(last))
-        causes += _seen(robot, log.unpack(last), parameters, known=bool(causes))
+        causes += _large_error(law, log.unpack(last), curve)
+        causes += _seen(robot, log.unpack(last), parameters, curve, known=bool(causes))
     plant, model = robot.plant(parameters), robot.model(parameters)
     if (np.abs(plant - model) > WRONG * np.abs(plant)).any():
         causes.append(Message("cause.model"))
@@ -125,16 +135,21 @@ def _foreseen_at(
     return foreseen(robot, law, q, parameters)
 
 
-def _large_error(law: str, last: dict[str, Array]) -> list[Message]:
+def _large_error(law: str, last: dict[str, Array], curve: Curve) -> list[Message]:
     """That the reference point was far away, if the law is meant for small errors."""
-    away = float(np.abs(last["theta_ref"] - last["theta"]).max())
-    if not law_named(law).small_errors or away < AWAY:
+    if not law_named(law).small_errors:
         return []
-    return [Message("cause.small_errors", {"away": f"{away:.1f}"})]
+    reference, theta = last["theta_ref"][:, 0], last["theta"][:, 0]
+    away = np.abs(curve.arc(reference) - curve.arc(theta))
+    at = int(away.argmax())
+    bend = np.abs(curve.curvature(np.linspace(theta[at], reference[at], BETWEEN))).max()
+    if away[at] * bend < AWAY:
+        return []
+    return [Message("cause.small_errors", {"away": f"{1e3 * away[at]:.0f}"})]
 
 
 def _seen(
-    robot: Robot, last: dict[str, Array], parameters: Parameters, known: bool
+    robot: Robot, last: dict[str, Array], parameters: Parameters, curve: Curve, known: bool
 ) -> list[Message]:
     """Causes that show in the last rows before the fault.
 
@@ -150,7 +165,9 @@ def _seen(
         causes.append(Message("cause.force", {"force": f"{force:.0f}"}))
     if limit == 0 and (more := exceeded(robot, np.abs(last["u"]).max(axis=0))) is not None:
         causes.append(more)
-    turned = np.abs(last["theta_rate"]).max() / parameters.control_rate
+    least = 0 if isinstance(curve, SplineCurve) else 1  # as in `far_from_path`
+    bends = np.maximum(curve.turning(last["theta"][:, 0]), least)
+    turned = np.abs(bends * last["theta_rate"][:, 0]).max() / parameters.control_rate
     if last["far"].max() > 0 and not known:
         fast = Message("cause.turned", {"turned": f"{turned:.2g}"})
         causes.append(fast if turned > NEAR_TURN else Message("cause.far"))

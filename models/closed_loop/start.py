@@ -21,7 +21,7 @@ from onpath.models.systems.robots import Robot
 
 BOUNDS = {"theta": np.pi, "beside": 0.2, "along": 2.0, "across": 2.0, "clock_offset": np.pi}
 """Largest absolute value of each number of a start, SI."""
-NEAR = 1e-3  # [rad], between a place and what the global search finds on the same strand
+NEAR = 5e-5  # [m] along the path, from a place to what the global search finds on its strand
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,6 +196,7 @@ def _on_strand(robot: Robot, curve: Curve, start: Start, q: Array) -> float | No
     """θ of a start on the path, if the global search would find another strand; else None."""
     if start.beside:
         return None
-    gap = closest_parameter(robot.frame, curve, robot.endpoint(q)) - start.theta
-    turns = round(gap / PERIOD) if curve.closed else 0
-    return start.theta if abs(gap - turns * PERIOD) > NEAR else None
+    found = closest_parameter(robot.frame, curve, robot.endpoint(q))
+    turns = round((found - start.theta) / PERIOD) if curve.closed else 0
+    there, here = curve.arc(np.array([found - turns * PERIOD, start.theta])).tolist()
+    return start.theta if abs(there - here) > NEAR else None

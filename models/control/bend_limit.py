@@ -6,7 +6,6 @@ from functools import lru_cache
 from typing import Any
 
 import casadi as ca
-import numpy as np
 
 from onpath.models.paths.spline_curves import SplineCurve
 from onpath.models.systems.parameters import Parameters
@@ -44,5 +43,4 @@ def allowed_turning(k1: Any, interval: Any) -> Any:
 def most_turning(curve: SplineCurve) -> float:
     """The largest κ |σ'| of a curve, by which its tangent turns per radian of θ."""
     theta = curve.sample(PER_PIECE * curve.pieces)
-    speed = np.linalg.norm(curve.at(theta, 1), axis=-1)
-    return max(float((np.abs(curve.curvature(theta)) * speed).max()), 1e-9)
+    return max(float(curve.turning(theta).max()), 1e-9)

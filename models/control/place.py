@@ -9,11 +9,13 @@ import casadi as ca
 import numpy as np
 
 from onpath.models.arrays import Array
-from onpath.models.paths.curves import Curve
+from onpath.models.paths.curves import PERIOD, Curve
+from onpath.models.paths.spline_curves import SplineCurve
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
 
-STEP = 0.01  # [rad], of the differences below
+STEP = 0.01  # [rad], of the differences below; on a drawing at most PART of a piece
+PART = 0.1
 EVEN = 1e-3  # [1/rad], largest deviation of the turning of a path that turns evenly
 SAMPLES = 64
 
@@ -50,13 +52,14 @@ def place_at(
         theta, rate: [rad], [rad/s].
     """
     system, at = robot.system, np.array([theta])
+    step = _step(curve)
     if not curve.closed:
-        at = at.clip(-np.pi + 2 * STEP, np.pi - 2 * STEP)
+        at = at.clip(-np.pi + 2 * step, np.pi - 2 * step)
     slope = bend = 0.0
     if system.n == system.m == system.p:
-        near = at + STEP * np.array([-1.0, 0.0, 1.0])
+        near = at + step * np.array([-1.0, 0.0, 1.0])
         before, here, after = (np.log(_inertia(robot, parameters, curve, near)) / 2).tolist()
-        slope, bend = (after - before) / (2 * STEP), (after - 2 * here + before) / STEP**2
+        slope, bend = (after - before) / (2 * step), (after - 2 * here + before) / step**2
     return Place(
         theta=theta,
         rate=rate,
@@ -67,10 +70,16 @@ def place_at(
     )
 
 
+def _step(curve: Curve) -> float:
+    """Half the distance over which differences are taken, [rad]."""
+    return min(STEP, PART * PERIOD / curve.pieces) if isinstance(curve, SplineCurve) else STEP
+
+
 def _turn(curve: Curve, theta: Array) -> Array:
     """Ω per radian at some places, (n, d, d)."""
     axes: Array = _axes(curve, theta)
-    slope: Array = (_axes(curve, theta + STEP) - _axes(curve, theta - STEP)) / (2 * STEP)
+    step = _step(curve)
+    slope: Array = (_axes(curve, theta + step) - _axes(curve, theta - step)) / (2 * step)
     turn = axes.transpose(0, 2, 1) @ slope
     return (turn - turn.transpose(0, 2, 1)) / 2
 
@@ -90,7 +99,7 @@ def _axes(curve: Curve, theta: Array) -> Array:
 
 @lru_cache(maxsize=64)
 def _turns_evenly(curve: Curve) -> bool:
-    turn = _turn(curve, curve.sample(SAMPLES))
+    turn = _turn(curve, curve.sample(curve.grid if isinstance(curve, SplineCurve) else SAMPLES))
     return bool(np.abs(turn - turn[0]).max() < EVEN)
 
 

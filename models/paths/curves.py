@@ -120,6 +120,10 @@ class Curve(ABC):
     def plan(self) -> Curve:
         """The plan view z(θ) of a space curve; a planar curve itself."""
 
+    def draws(self, theta: Array) -> NDArray[np.bool_]:
+        """Whether the pen is down at θ, of the same shape."""
+        return np.ones(np.shape(theta), dtype=bool)
+
     @property
     def begin(self) -> float:
         """θ at which runs begin, [rad]."""
@@ -149,6 +153,26 @@ class Curve(ABC):
             return bend / np.maximum(np.linalg.norm(first, axis=-1), 1e-12) ** 3
         speed = np.maximum(np.hypot(first[..., 0], first[..., 1]), 1e-12)
         return (first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]) / speed**3
+
+    def turning(self, theta: Array) -> Array:
+        """κ |σ'| >= 0, by which the tangent turns per radian of θ, shape (...,) -> (...,)."""
+        return np.abs(self.curvature(theta)) * np.linalg.norm(self.at(theta, 1), axis=-1)
+
+    def arc(self, theta: Array) -> Array:
+        """Arc length from -π to θ, and on over further turns, shape (...,) -> (...,), [m].
+
+        It is that of straight lines between 4 `grid` points.
+        """
+        theta = np.asarray(theta, dtype=float)
+        even = np.linspace(-np.pi, np.pi, 4 * self.grid + 1)
+        steps = np.linalg.norm(np.diff(self.at(even), axis=0), axis=-1)
+        s = np.concatenate([[0.0], np.cumsum(steps)])
+        if self.closed:
+            turns = np.floor((theta + np.pi) / PERIOD)
+            return np.interp(theta - PERIOD * turns, even, s) + turns * s[-1]
+        ends = np.linalg.norm(self.at(even[[0, -1]], 1), axis=-1)
+        past = np.where(theta > 0, ends[1], ends[0]) * (theta - np.clip(theta, -np.pi, np.pi))
+        return np.interp(theta, even, s) + past
 
     def length(self) -> float:
         """Arc length ∫ |σ'| dθ over [-π, π], [m], from 4 `grid` samples.

@@ -101,8 +101,8 @@ class SplineCurve(Curve):
             values[2:] = [np.where(beyond == 0, value, 0.0) for value in values[2:]]
         return values
 
+    @override
     def draws(self, theta: Array) -> NDArray[np.bool_]:
-        """Whether the pen is down at θ, of the same shape."""
         inner = self._inner(theta)
         down = np.ones(np.shape(theta), dtype=bool)
         for begin, end in self.raised:

@@ -24,9 +24,14 @@ import numpy as np
 from onpath.models.arrays import Array
 from onpath.models.paths.curve_faults import ambiguities
 from onpath.models.paths.curves import Curve
+from onpath.models.paths.spline_curves import SplineCurve
 
 SAMPLES = 240
-"""Points of the curve that are compared with each other."""
+"""Points of a series that are compared with each other; a drawing has `Curve.grid` of them."""
+ROWS = 256
+"""Points that are compared with all others in one operation."""
+PER_PIECE = 8
+"""Places on a piece of a drawing at which its bend is taken."""
 BEYOND = 0.5
 """The part of an open curve's continuation that is considered, as a share of its range of θ."""
 TINY = 1e-12
@@ -53,17 +58,23 @@ class CurveFrames:
 def tube_width(curve: Curve) -> float:
     """W, the radius of the largest tube with a unique closest point, [m]; infinite for a line.
 
-    It is 0 for a path that crosses itself.
+    It is 0 for a path that crosses itself. Where the pen is up, a drawing does not count.
     """
     if any(each.check == "crosses" for each in ambiguities(curve)):
         return 0.0
     theta = _compared(curve)
     points, tangents = curve.at(theta), _tangents(curve, theta)
-    gaps = points - points[:, None]
-    across = gaps - (gaps * tangents[:, None]).sum(-1, keepdims=True) * tangents[:, None]
-    radius = _radii(gaps, np.linalg.norm(across, axis=-1))
+    width = np.inf
+    for begin in range(0, len(points), ROWS):
+        some = slice(begin, begin + ROWS)
+        gaps, along = points - points[some, None], tangents[some, None]
+        across = gaps - (gaps * along).sum(-1, keepdims=True) * along
+        width = min(width, float(_radii(gaps, np.linalg.norm(across, axis=-1)).min()))
+    if isinstance(curve, SplineCurve):
+        theta = curve.sample(PER_PIECE * curve.pieces)
+        theta = theta[curve.draws(theta)]
     curvature = np.abs(curve.curvature(theta)).max()
-    width = min(float(radius.min()), 1 / max(float(curvature), TINY))
+    width = min(width, 1 / max(float(curvature), TINY))
     return width if width < STRAIGHT else np.inf
 
 
@@ -102,9 +113,12 @@ def offset(frames: CurveFrames, xi: Array) -> Array:
 
 def _compared(curve: Curve) -> Array:
     """θ of the points that are compared, on an open curve also beyond its ends, (k,), [rad]."""
+    count = curve.grid if isinstance(curve, SplineCurve) else SAMPLES
     if curve.closed:
-        return curve.sample(SAMPLES)
-    return np.linspace(-(1 + BEYOND) * np.pi, (1 + BEYOND) * np.pi, SAMPLES)
+        theta = curve.sample(count)
+    else:
+        theta = np.linspace(-(1 + BEYOND) * np.pi, (1 + BEYOND) * np.pi, count)
+    return theta[curve.draws(theta)]
 
 
 def _tangents(curve: Curve, theta: Array) -> Array:

@@ -33,7 +33,7 @@ from onpath.models.systems.robots import Robot
 
 FOLLOWING, TRACKING = "path_following", "trajectory_tracking"
 NOISE = 1e-3  # [rad], of the joint angles; about 0.3 mm at the end-point
-JUMP = 0.5  # [rad] in one tick, which no motion reaches
+JUMP = 0.02  # [m] along the path in one tick, which no motion reaches
 WAYS: Mapping[str, str] = {
     "continued": "path following; each search begins at the last closest point",
     "clock": "trajectory tracking; a clock says which strand comes next",
@@ -77,16 +77,19 @@ class GlobalSearch(InterpretedLoop):
         return state, rows
 
 
+def _path() -> Curve:
+    return presets()["figure of eight"].curve
+
+
 def planned(seed: int = 1) -> Experiment:
     """The figure of eight, at 2 rad/s from rest at the crossing, until shortly before it again.
 
     Args:
         seed: of the noise.
     """
-    curve = presets()["figure of eight"].curve
     parameters = FIVE_BAR.parameters(speed=2.0, K3=0.0, sensor_noise=NOISE, seed=seed)
     values = {"duration": 1.5, "start_z1": 0.0, "start_z2": 0.0}
-    return on_path(FIVE_BAR, parameters, curve).with_values(values)
+    return on_path(FIVE_BAR, parameters, _path()).with_values(values)
 
 
 def crossing_runs(experiment: Experiment) -> dict[str, Trajectory]:
@@ -103,5 +106,5 @@ def crossing_runs(experiment: Experiment) -> dict[str, Trajectory]:
 
 def jumps(trajectory: Trajectory) -> Array:
     """Times at which the closest point has jumped to another strand, (k,), [s]."""
-    steps = np.abs(np.diff(trajectory.fields["theta"][:, 0]))
+    steps = np.abs(np.diff(_path().arc(trajectory.fields["theta"][:, 0])))
     return trajectory.t[1:][steps > JUMP]

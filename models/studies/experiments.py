@@ -364,7 +364,7 @@ def run(
         if fault is not None:
             tick, reason = fault
             rows = rows[:tick]
-            message = explained(reason, robot, kernel.log, law, rows, experiment.parameters)
+            message = explained(reason, robot, kernel.log, law, rows, experiment.parameters, curve)
             failed = running.failure if isinstance(running, CalledLoop) else None
             fault = tick, failed or message
         segments.append((rows, curve, held))

@@ -28,7 +28,7 @@ from onpath.models.systems.robots import Robot
 CHUNK = 200  # ticks between checks for divergence
 FAR_AWAY = 1e3  # [m], of a hand that pulls
 STEP = 0.01  # [s] between movements of a hand that goes along with the end-point
-JUMP = 0.5  # [rad] in one tick; a closest point that moves farther has jumped
+JUMP = 0.02  # [m] along the path in one tick; a closest point that moves farther has jumped
 LEFT = np.array([[0.0, -1.0], [1.0, 0.0]])  # turns a tangent to the left
 
 
@@ -119,7 +119,7 @@ class ScheduledRun:
         before, new = self._theta, self._layouts.log.unpack(rows)["theta"][:, 0]
         theta, self._theta = np.concatenate([before, new]), new[-1:].copy()
         turns = np.floor((theta - place) / PERIOD) if self._curve.closed else np.sign(theta - place)
-        passed = (np.diff(turns) != 0) & (np.abs(np.diff(theta)) < JUMP)
+        passed = (np.diff(turns) != 0) & (np.abs(np.diff(self._curve.arc(theta))) < JUMP)
         return int(passed.argmax()) + 1 - len(before) if passed.any() else None
 
     def _settings(self) -> Array:

@@ -23,7 +23,6 @@ from onpath.models.arrays import Array
 from onpath.models.closed_loop.trajectory import Trajectory
 from onpath.models.control.sides import LEFT, RIGHT
 from onpath.models.paths.curves import Curve
-from onpath.models.paths.spline_curves import SplineCurve
 from onpath.models.systems.robots import Robot
 
 SIZE, DPI = (7.6, 5.2), 100
@@ -80,7 +79,7 @@ def _draw_scene(
 
     theta = np.linspace(-np.pi, np.pi, 2 * curve.grid + 1)
     path = seen(robot.frame.lift(curve.at(theta)))
-    drawn = curve.draws(theta) if isinstance(curve, SplineCurve) else np.full(theta.shape, True)
+    drawn = curve.draws(theta)
     for shown, style in ((drawn, {}), (~drawn, {"linestyle": ":", "alpha": 0.6})):
         axes.plot(*np.where(shown, path, np.nan), color=palette.GREY.hex, linewidth=1.2, **style)
     axes.plot(*seen(run.fields["y"][max(0, row - TRACE) : row + 1]), color=colour, linewidth=1.8)

@@ -9,7 +9,6 @@ from typing import NamedTuple
 import numpy as np
 
 from onpath.models.paths.curves import Curve
-from onpath.models.paths.spline_curves import SplineCurve
 
 MARKER, TIP, END, FORCE = -4, -3, -2, -1  # indices of these in a robot's points
 
@@ -194,8 +193,6 @@ class PathSnapshot:
     def drawn(self) -> np.ndarray:
         """The straight lines between `points` where the pen is down, shape (k, 2, 3)."""
         lines = np.stack([self.points[:-1], self.points[1:]], axis=1)
-        if not isinstance(self.curve, SplineCurve):
-            return lines
         theta = np.linspace(-np.pi, np.pi, len(self.points))
         return lines[self.curve.draws((theta[1:] + theta[:-1]) / 2)]
 

@@ -121,7 +121,7 @@ def test_a_stop_beyond_the_torques_of_the_file_says_so() -> None:
     row = {name: np.zeros(size) for name, size in log.fields}
     for torque, beyond in ((11.0, False), (25.0, True)):
         rows = log.pack(row | {"u": np.array([torque, 0.0, 0.0])})[None]
-        reason = explained(NOT_FINITE, robot, log, FOLLOWER, rows, parameters)
+        reason = explained(NOT_FINITE, robot, log, FOLLOWER, rows, parameters, circle(0.05))
         assert ("more than the 12 N m that the robot's file states" in str(reason)) is beyond
 
 

@@ -12,15 +12,21 @@ from onpath.models.paths.path_checks import TUBE
 from onpath.models.paths.path_design import presets
 from onpath.models.paths.space_curves import saddle
 from onpath.models.paths.tube import curve_frames, local_widths, offset, tube_width
+from tests.support.drawings import star
 
 CURVES = {name: design.curve for name, design in presets().items()}
 PROPER = {name: curve for name, curve in CURVES.items() if not ambiguities(curve)}
 RISING = {f"rising {name}": saddle(curve, 0.03) for name, curve in PROPER.items()}
+TUBES = PROPER | RISING | {"star": star()}
 
 
 def nearest_in(curve: Curve, points: Array) -> tuple[Array, Array]:
     """θ and distance of the closest points, also beyond the ends of an open curve."""
-    grid = curve.sample(512) if curve.closed else np.linspace(-1.5 * np.pi, 1.5 * np.pi, 513)
+    count = 2 * curve.grid
+    if curve.closed:
+        grid = curve.sample(count)
+    else:
+        grid = np.linspace(-1.5 * np.pi, 1.5 * np.pi, count + 1)
     return nearest(curve.at, grid, points)
 
 
@@ -36,7 +42,7 @@ def test_of_an_ellipse_it_is_the_radius_at_its_sharper_ends() -> None:
     assert tube_width(ellipse((0.07, 0.04))) == pytest.approx(0.04**2 / 0.07, rel=1e-6)
 
 
-@pytest.mark.parametrize("curve", [*PROPER.values(), *RISING.values()], ids=[*PROPER, *RISING])
+@pytest.mark.parametrize("curve", TUBES.values(), ids=TUBES)
 def test_within_it_the_closest_point_is_where_one_came_from(curve: Curve) -> None:
     width = min(tube_width(curve), 0.1)
     inner = np.linspace(-0.9, 0.9, 61) * np.pi

@@ -92,7 +92,7 @@ def test_a_brake_that_every_other_law_stands_stops_contouring_for_the_reason_tha
     assert [*stops] == ["contouring"] and 0.24 < stops["contouring"] - 3.0 < 0.28
     stopped = ends["contouring"]
     assert stopped.distance[3100] > 0.005 > ends["path_following"].distance.max()
-    told = "Likely cause: its reference point was 1.6 rad away, and the law uses the axes of that"
+    told = "Likely cause: its reference point was 78 mm away, and the law uses the axes of that"
     assert told in stopped.reason
     docstring = " ".join((contouring.__doc__ or "").split())
     assert stated("stops after # s, when its reference point is # rad ahead", docstring) == [
