@@ -151,9 +151,12 @@ def _shade_held(axes: Axes, runs: list[Trajectory]) -> None:
 
 def _draw_space(axes: Axes, experiment: Experiment, runs: list[Trajectory]) -> None:
     frame = experiment.robot().frame
-    path = 1e3 * experiment.curve().plan.at(np.linspace(-np.pi, np.pi, 400))
-    axes.plot(*path.T, color="0.75", linewidth=6, solid_capstyle="round", label="path")
-    given = experiment.curve().given
+    curve = experiment.curve()
+    for number, stroke in enumerate(curve.plan.strokes()):
+        label = "_" if number else "path"
+        style = {"color": "0.75", "linewidth": 6, "solid_capstyle": "round"}
+        axes.plot(*(1e3 * stroke.T), label=label, **style)
+    given = curve.given
     if given is not None:
         axes.plot(*(1e3 * given.T), color="0.5", linewidth=0.8, linestyle="--", label="given")
     for run in runs:

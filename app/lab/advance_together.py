@@ -134,8 +134,8 @@ def _advance(loop: Loop, members: Sequence[Row]) -> None:
         if len(good) < len(rows):
             states, moved, largest = states[good], rows[good], largest[good]
         curves = [members[i][1].curve for i in good]
-        distances = _distances(first.robot, first.kind, curves, moved, log)
-        most = np.fmax(largest, np.fmax.reduce(distances, axis=1))
+        distances, counted = _distances(first.robot, first.kind, curves, moved, log)
+        most = np.fmax(largest, np.fmax.reduce(counted, axis=1))
         after = joined(states, moved[:, -1], distances[:, -1], most)
         for row, i in enumerate(good):
             members[i][0].slot = after, row
@@ -173,8 +173,10 @@ def _faults(
 
 def _distances(
     robot: Robot, kind: Kind, curves: Sequence[Curve], rows: Array, log: Layout
-) -> Array:
+) -> tuple[Array, Array]:
     """Distances of the end-points from their paths in some rows and the last, (runs, rows), [m].
+
+    Then the same with 0 where the pen is raised.
 
     On a drawing, a robot that a clock has moved off the path may meet it again at another stroke
     than the one on which θ was left behind: its distance is from where its reference is.
@@ -182,7 +184,13 @@ def _distances(
     system, slices = robot.system, log.slices
     exact = system.controlled_output is system.output and not kind.encoder
     aim = law_named(kind.law).aim if kind.spline else "theta"
+    some, theta = rows, slices[aim].start
     if exact and not kind.level_set and system.p == 2 and aim == "theta":
-        return np.abs(rows[..., slices["xi"].start])
-    some = rows[:, (rows.shape[1] - 1) % DISTANCE_INTERVAL :: DISTANCE_INTERVAL]
-    return near_distances(robot.frame, curves, some[..., slices["y"]], some[..., slices[aim].start])
+        distances = np.abs(rows[..., slices["xi"].start])
+    else:
+        some = rows[:, (rows.shape[1] - 1) % DISTANCE_INTERVAL :: DISTANCE_INTERVAL]
+        distances = near_distances(robot.frame, curves, some[..., slices["y"]], some[..., theta])
+    if not kind.spline:
+        return distances, distances
+    down = [curve.draws(each) for curve, each in zip(curves, some[..., theta], strict=True)]
+    return distances, np.where(down, distances, 0.0)

@@ -138,10 +138,10 @@ class PathCheck:
             at = {"cx": f"{1e3 * x:.1f}", "cy": f"{-1e3 * y:.1f}", "r": "1.5", "fill": "red"}
             ElementTree.SubElement(drawing, f"{{{SVG}}}circle", at)
         if self.nearest is not None and self.nearest is not self.path:
-            points = 1e3 * self.nearest.at(np.linspace(-np.pi, np.pi, 181)) * (1, -1)
-            line = " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
-            shape = {"points": line, "fill": "none", "stroke": "green"}
-            ElementTree.SubElement(drawing, f"{{{SVG}}}polyline", shape)
+            for stroke in self.nearest.strokes():
+                line = " ".join(f"{x:.1f},{y:.1f}" for x, y in 1e3 * stroke[:, :2] * (1, -1))
+                shape = {"points": line, "fill": "none", "stroke": "green"}
+                ElementTree.SubElement(drawing, f"{{{SVG}}}polyline", shape)
         return ElementTree.tostring(drawing, encoding="unicode")
 
     def _repr_html_(self) -> str:

@@ -14,7 +14,7 @@ from onpath.models.arrays import Array
 from onpath.models.control.laws.registry import law_named
 from onpath.models.layout import Layout
 from onpath.models.paths.curves import Curve
-from onpath.models.paths.distance import path_distance
+from onpath.models.paths.distance import drawn_distance
 from onpath.models.robot_files.guesses import Guess
 from onpath.models.systems.guessed_numbers import with_mark
 from onpath.models.systems.robots import Robot
@@ -31,7 +31,7 @@ class Trajectory:
         t: time, shape (n,), [s].
         fields: the log by name (models/closed_loop/loop_vectors.py), each shape (n, size); where
             sensors are not exact also `MEASURED`, the joint angles that they read, [rad].
-        distance: from the actual end-point to the path, shape (n,), [m].
+        distance: from the actual end-point to the path, shape (n,), [m]; 0 where the pen is raised.
         speed: along the path, shape (n,), [m/s].
         held: whether the brake was on, shape (n,).
         stopped_at: time at which the run was stopped as diverged, [s], or None.
@@ -108,9 +108,11 @@ def record(
     """
     rows = np.concatenate([rows for rows, _, _ in segments])
     fields = log.unpack(rows)
-    distance = [
-        path_distance(robot.frame, curve, log.unpack(part)["y"]) for part, curve, _ in segments
-    ]
+    distance = list[Array]()
+    for part, curve, _ in segments:
+        some = log.unpack(part)
+        theta = some[law_named(law).aim][:, 0]
+        distance.append(drawn_distance(robot.frame, curve, some["y"], theta))
     held = [np.full(len(part), hold) for part, _, hold in segments]
     return Trajectory(
         law=law,

@@ -53,20 +53,22 @@ class Curve(ABC):
     given: Array | None = field(default=None, kw_only=True)
 
     def __repr__(self) -> str:
-        kind, size = "closed" if self.closed else "open", 1e3 * np.ptp(self._drawn(), axis=0)
+        kind, size = "closed" if self.closed else "open", 1e3 * np.ptp(self._seen(), axis=0)
         extent = " x ".join(f"{each:.0f}" for each in size)
         return f"<{kind} path, {1e3 * self.length():.0f} mm long, {extent} mm>"
 
     def _repr_svg_(self) -> str:
         """A drawing for notebooks: plan view, given points dashed, and a dot where runs begin."""
-        z = 1e3 * self._drawn()[:, :2] * (1, -1)
+        strokes = [1e3 * each[:, :2] * (1, -1) for each in self.strokes()]
+        z = np.concatenate(strokes)
         (left, top), (width, height) = z.min(0) - 5, np.ptp(z, axis=0) + 10
         x, y = 1e3 * self.at(np.array(self.begin))[:2] * (1, -1)
-        lines = "" if self.given is None else _polyline(1e3 * self.given * (1, -1), "2")
+        lines = [] if self.given is None else [_polyline(1e3 * self.given * (1, -1), "2")]
+        lines += [_polyline(each) for each in strokes]
         return (
             f'<svg xmlns="http://www.w3.org/2000/svg" width="{2 * width:.0f}"'
             f' viewBox="{left:.1f} {top:.1f} {width:.1f} {height:.1f}">'
-            f"{lines}{_polyline(z)}"
+            f"{''.join(lines)}"
             f'<circle cx="{x:.1f}" cy="{y:.1f}" r="2" fill="gray"/></svg>'
         )
 
@@ -74,9 +76,13 @@ class Curve(ABC):
         """The drawing, with its dimensions."""
         return f"{self._repr_svg_()}<p>{repr(self)[1:-1]}</p>"
 
-    def _drawn(self) -> Array:
-        """Points from θ = -π to π, shape (n, d), [m]."""
-        return self.at(np.linspace(-np.pi, np.pi, self.grid + 1))
+    def strokes(self) -> list[Array]:
+        """The lines where the pen is down, as points close to each other, (n, d) each, [m]."""
+        return [self.at(np.linspace(-np.pi, np.pi, self.grid + 1))]
+
+    def _seen(self) -> Array:
+        """All points of the strokes, shape (n, d), [m]."""
+        return np.concatenate(self.strokes())
 
     def data(self) -> dict[str, Any]:
         """The curve by the names of its attributes."""

@@ -41,6 +41,15 @@ def path_distance(frame: Frame, curve: Curve, y: Array, samples: int | None = No
     return distances if curve.closed else np.minimum(distances, _beyond_the_ends(frame, curve, y))
 
 
+def drawn_distance(frame: Frame, curve: Curve, y: Array, theta: Array) -> Array:
+    """`path_distance` where the pen is down, and 0 where it is raised: nothing is drawn there.
+
+    Args:
+        theta: where on the path the points belong, shape (n,), [rad].
+    """
+    return np.where(curve.draws(theta), path_distance(frame, curve, y), 0.0)
+
+
 def _minima(
     frame: Frame, curve: Curve, y: Array, samples: int | None
 ) -> tuple[NDArray[np.intp], Array, Array]:

@@ -109,6 +109,16 @@ class SplineCurve(Curve):
             down &= (inner <= begin) | (inner >= end)
         return down
 
+    @override
+    def strokes(self) -> list[Array]:
+        ends = np.array([-np.pi, *(end for link in self.raised for end in link), np.pi])
+        found = list[Array]()
+        for begin, end in ends.reshape(-1, 2):
+            if begin < end:
+                count = 2 + int((end - begin) / PERIOD * 2 * self.grid)
+                found.append(self.at(np.linspace(begin, end, count)))
+        return found
+
     def _inner(self, theta: Array) -> Array:
         """The place in [-π, π] at which the pieces are to be evaluated for θ."""
         if self.closed:
@@ -135,11 +145,12 @@ class SplineCurve(Curve):
 
     @override
     def length(self) -> float:
-        """Arc length ∫ |σ'| dθ over [-π, π], [m], by 8 Gauss points on each piece."""
+        """Arc length ∫ |σ'| dθ where the pen is down, [m], by 8 Gauss points on each piece."""
         places, weights = _GAUSS
         width = PERIOD / self.pieces
         theta = -np.pi + width * (np.arange(self.pieces)[:, None] + (1 + places) / 2)
-        return float((np.linalg.norm(self.at(theta, 1), axis=-1) @ weights).sum() * width / 2)
+        all_of_it = (np.linalg.norm(self.at(theta, 1), axis=-1) @ weights).sum() * width / 2
+        return float(all_of_it - np.diff(self.arc(np.array(self.raised).reshape(-1, 2))).sum())
 
 
 def grained(points: Array) -> Array:

@@ -436,7 +436,7 @@ def compared(curve: SplineCurve, lines: Sequence[Array]) -> SplineCurve:
     from scipy.spatial import KDTree
 
     dense = np.vstack([_even(line)[0] for line in lines])
-    theta = curve.sample(max(4 * curve.grid, int(2 * curve.length() / STEP)))
+    theta = curve.sample(max(4 * curve.grid, int(2 * float(curve.arc(np.array(np.pi))) / STEP)))
     seen = curve.at(theta[curve.draws(theta)])
     distances = KDTree(dense).query(seen)[0], KDTree(seen).query(dense)[0]
     thin = sum(len(line) for line in lines) // DENSE + 1

@@ -33,6 +33,7 @@ from onpath.models.closed_loop.simulation import (
     kind_of,
     pushed,
     settings_vector,
+    speed_on,
 )
 from onpath.models.closed_loop.start import driven_rates
 from onpath.models.control.forecast import check_possible
@@ -40,7 +41,7 @@ from onpath.models.control.laws.registry import LAWS, law_named
 from onpath.models.control.settable import values_of
 from onpath.models.errors import Message
 from onpath.models.paths.curves import Curve
-from onpath.models.paths.distance import path_distance
+from onpath.models.paths.distance import drawn_distance
 from onpath.models.systems.efforts import exceeded
 from onpath.models.systems.guessed_numbers import told_guesses
 from onpath.models.systems.parameters import Parameters, time_step
@@ -256,10 +257,13 @@ def _outcome(
     contest: Contest, law: str, obstruction: Obstruction, place: float, run: _Run
 ) -> Outcome:
     log, fault = run
-    dt, speed = time_step(contest.parameters), contest.parameters.speed
+    dt, speed = time_step(contest.parameters), speed_on(contest.parameters, contest.curve)
     torques = np.abs(log["u"][:fault]).max(axis=0, initial=0.0)
     seen = log["y"][:fault][::5]
-    distance = path_distance(contest.robot.frame, contest.curve, seen) if len(seen) else np.zeros(0)
+    theta = log["theta"][:fault, 0][::5]
+    distance = np.zeros(len(seen))
+    if len(seen):
+        distance = drawn_distance(contest.robot.frame, contest.curve, seen, theta)
     curve = tuple(distance[:: round(CURVE_STEP / dt / 5)].tolist())
     if fault is not None:
         measures = dict.fromkeys(MEASURES, np.inf)
@@ -335,10 +339,10 @@ def _start(contest: Contest, kernel: Kernel, obstruction: Obstruction, place: fl
     q = robot.rest(robot.frame.lift(curve.at(np.array(place)) + obstruction.off * outside))
     if obstruction.rests:
         return first_state(robot, kernel, curve, q)
-    rate = robot.frame.lift(contest.parameters.speed * first) - robot.frame.lift(np.zeros(2))
+    speed = speed_on(contest.parameters, curve)
+    rate = robot.frame.lift(speed * first) - robot.frame.lift(np.zeros(2))
     v = driven_rates(robot, contest.parameters, q, rate)
     state = kernel.state.unpack(first_state(robot, kernel, curve, q, v))
-    speed = contest.parameters.speed
     return kernel.state.pack({**state, "theta_rate": speed, "theta": place, "theta_ref": place})
 
 
