@@ -137,7 +137,7 @@ CONTROLS = {
         *("least_rank", "show_zone"),
     ),
     "sign": ("draw", "undo", "lines"),
-    "gains": ("speed", "K1", "K2", "K3", "K4", "K5", "poles", "pole_plane"),
+    "gains": ("speed", "pace", "K1", "K2", "K3", "K4", "K5", "poles", "pole_plane"),
 }
 """Controls of a lesson's step that stand for several fields."""
 

@@ -1415,6 +1415,7 @@ forecast-singular = die Entkopplungsmatrix ist am Start singulär: Dort können 
 forecast-no_rest = der Roboter kann am Start nicht ruhen: Seine Koordinaten ohne Motor setzen sich in Bewegung, was immer die Motoren tun
 forecast-unstable = die Nulldynamik ist instabil: Während der Ausgang auf der Bahn bleibt, wächst die Bewegung der Koordinaten ohne Motor, anfangs alle { $time } s auf das Zehnfache (Exponent { $rate } 1/s)
 forecast-exhausted = schon Stillstehen braucht auf dieser Bahn { $share } % der Drehmomentgrenze: gegen die Schwerkraft und wegen der Messfehler. Für die Bewegung bleibt zu wenig: Der Roboter kann von der Bahn abkommen und stehen bleiben
+forecast-unplanned = auf einer Zeichnung fahren die zeitoptimalen Gesetze mit der gewünschten Geschwindigkeit: Eine Zeichnung hat mehr Biegungen, als in ihren Plan der schnellsten Fahrt passen
 forecast-unmodelled = die Bahnfolgeregelung kann hier weiter von ihrer Bahn abkommen als die Nachlaufregelung: Ihre Geschwindigkeiten kommen aus dem Modell des Reglers, und es gibt einen Fehler darin, eine Nutzlast, Reibung, Rechenzeit oder eine Drehmomentgrenze
 cause-poles_across = diese Verstärkungen sind quer zur Bahn bei dieser Regelrate und Verzögerung instabil (K2 oder K3 senken oder die Rate erhöhen)
 cause-poles_along = diese Verstärkungen sind längs der Bahn bei dieser Regelrate und Verzögerung instabil (K5 senken oder die Rate erhöhen)

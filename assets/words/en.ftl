@@ -1006,6 +1006,7 @@ forecast-singular = the decoupling matrix is singular at the start: from rest th
 forecast-no_rest = the robot cannot rest at the start: its coordinates without a motor begin to move, whatever the motors do
 forecast-unstable = the zero dynamics are unstable: while the output stays on the path, the motion of the coordinates without a motor grows, at first tenfold every { $time } s (exponent { $rate } 1/s)
 forecast-exhausted = standing still on this path already takes { $share } % of the torque limit, for gravity and for what the errors of the sensors ask for. Too little is left for the motion: the robot may leave its path and stop
+forecast-unplanned = on a drawing, time-optimal laws keep to the wanted speed: a drawing has more bends than their plan of the fastest speed can hold
 forecast-unmodelled = path following may get farther from its path than the tracker here: its velocities come from the controller's model, and there is an error in it, a payload, friction, a delay or a torque limit
 cause-poles_across = these gains are unstable across the path at this control rate and delay (lower K2 or K3, or raise the rate)
 cause-poles_along = these gains are unstable along the path at this control rate and delay (lower K5, or raise the rate)

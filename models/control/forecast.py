@@ -1,4 +1,4 @@
-"""A forecast, before a run: for coordinates without a motor, a torque limit, and an observer.
+"""A forecast, before a run: for coordinates without a motor, torque limits, observers and drawings.
 
 Laws that command y'' find the torques by D = J g_v. If D loses rank at the start, there are no such
 torques: this is the rank test (11). If D has full rank, the output moves as commanded, and the zero
@@ -19,12 +19,14 @@ import casadi as ca
 import numpy as np
 
 from onpath.models.arrays import Array
+from onpath.models.control.laws.planned_speed import speed_plan
 from onpath.models.control.laws.registry import law_named
 from onpath.models.control.rank_test import rank_number
 from onpath.models.control.speed_limit import SHARE
 from onpath.models.control.standing_torque import standing_torque
 from onpath.models.errors import CodedError, Message
 from onpath.models.paths.curves import Curve
+from onpath.models.paths.spline_curves import SplineCurve
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
 from onpath.models.systems.system import MechanicalSystem, conditioning
@@ -33,6 +35,7 @@ from onpath.models.systems.zero_dynamics import ZeroDynamics, zero_dynamics
 SINGULAR = Message("forecast.singular")
 NO_REST = Message("forecast.no_rest")
 UNMODELLED = Message("forecast.unmodelled")
+UNPLANNED = Message("forecast.unplanned")
 FOLLOWER = "path_following"
 LEAST_RANK = 1e-6
 """σ_min / σ_max of D up to which it counts as singular."""
@@ -113,7 +116,11 @@ def forecasts(
 def doubts(robot: Robot, laws: Iterable[str], parameters: Parameters, path: Curve) -> list[Message]:
     """What may go wrong on a path, with the rise of the parameters, although rank test and zero
     dynamics do not foresee it; the worst first."""
-    found = exhausted(robot, parameters, path), unmodelled(robot, laws, parameters)
+    found = (
+        exhausted(robot, parameters, path),
+        unmodelled(robot, laws, parameters),
+        unplanned(laws, parameters, path),
+    )
     return [each for each in found if each is not None]
 
 
@@ -148,6 +155,13 @@ def unmodelled(robot: Robot, laws: Iterable[str], parameters: Parameters) -> Mes
     if wrong or friction or parameters.delay > 0 or parameters.torque_limit > 0:
         return UNMODELLED
     return None
+
+
+def unplanned(laws: Iterable[str], parameters: Parameters, path: Curve) -> Message | None:
+    """Says that a law which plans the fastest speed keeps to the wanted one; None if it plans."""
+    plans = any(law_named(law).plan is speed_plan for law in laws)
+    drawn = plans and parameters.torque_limit > 0 and isinstance(path, SplineCurve)
+    return UNPLANNED if drawn else None
 
 
 def check_possible(robot: Robot, law: str, parameters: Parameters, q: Array) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
@@ -14,6 +15,8 @@ from onpath.models.closed_loop.trajectory import Trajectory
 from onpath.models.control.forecast import (
     NO_REST,
     SINGULAR,
+    UNPLANNED,
+    doubts,
     exhausted,
     forecast,
     growth_rate,
@@ -28,12 +31,13 @@ from onpath.models.paths.curves import circle
 from onpath.models.studies.experiments import on_path, run
 from onpath.models.systems.cart_pendulum import ROBOT as CART
 from onpath.models.systems.cart_pendulum import CartParameters
-from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot, RobotEntry
 from onpath.models.systems.rod_gantry import PERCUSSION, ROD, RodGantryParameters
 from onpath.models.systems.rod_gantry import ROBOT as GANTRY
 from onpath.models.systems.zero_dynamics import zero_dynamics
+from tests.support.drawings import star
 from tests.support.passive_chain import Shape, entry_of, passive_chain
 from tests.support.suitable_laws import laws_for
 
@@ -277,3 +281,13 @@ def test_the_errors_of_the_sensors_count_and_nothing_is_said_without_a_limit() -
     assert exhausted(entry.make(coarse), coarse, path) is not None
     free = replace(coarse, torque_limit=0.0)
     assert exhausted(entry.make(free), free, path) is None
+
+
+def test_a_law_says_where_it_does_not_plan_its_speed() -> None:
+    """Its plan is empty exactly there, if the torque is limited at all."""
+    own = FIVE_BAR.parameters()
+    for law, path, limit in product(laws_for(), (circle(0.05), star()), (0.0, 1.0)):
+        limited, plan = replace(own, torque_limit=limit), LAWS[law].plan
+        empty = plan is not None and not len(plan(FIVE_BAR.make(limited), limited, path))
+        told = doubts(FIVE_BAR.make(limited), [law], limited, path)
+        assert (UNPLANNED in told) == (empty and limit > 0), (law, limit)
