@@ -11,6 +11,8 @@ MOST_PARTS = 200  # lines of a file that are shown and can be chosen
 
 # From the page
 
+Part = Annotated[int, Meta(ge=1, le=MOST_PARTS)]
+
 
 class PathFile(Struct, frozen=True, forbid_unknown_fields=True, tag_field="kind", tag="path"):
     """A file with a path that the robots are to follow.
@@ -21,7 +23,7 @@ class PathFile(Struct, frozen=True, forbid_unknown_fields=True, tag_field="kind"
         opened: whether it is open, although its ends meet.
         turn: angle by which it is turned anticlockwise, [degrees].
         right, up: coordinates of its middle in the plane of the path, [mm].
-        part: number of the wanted line of the file, from 1; 0: all of them.
+        parts: numbers of the wanted lines of the file, from 1; none: all of them.
     """
 
     size: Annotated[float, Meta(ge=0, le=400)] = 100.0
@@ -30,7 +32,7 @@ class PathFile(Struct, frozen=True, forbid_unknown_fields=True, tag_field="kind"
     turn: Annotated[float, Meta(ge=-360, le=360)] = 0.0
     right: Annotated[float, Meta(ge=-400, le=400)] = 0.0
     up: Annotated[float, Meta(ge=-400, le=400)] = 0.0
-    part: Annotated[int, Meta(ge=0, le=MOST_PARTS)] = 0
+    parts: Annotated[tuple[Part, ...], Meta(max_length=MOST_PARTS)] = ()
 
 
 class SendFile(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="send"):

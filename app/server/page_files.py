@@ -234,7 +234,7 @@ def _placing(use: PathFile) -> Placing:
         corners=ROUND if use.radius else SMOOTH,
         radius=use.radius / 1e3 or RADIUS,
         closed=False if use.opened else None,
-        part=(use.part,) if use.part else None,
+        part=use.parts or None,
         turn=use.turn,
     )
 

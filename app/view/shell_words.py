@@ -43,7 +43,7 @@ SHELL = (
     *("class.teacher", "class.key", "class.key_hint", "class.teach"),
     *("design.files", "design.size", "design.size_hint", "design.radius", "design.radius_hint"),
     *("design.open", "design.open_hint", "design.upload", "design.reading", "design.lines"),
-    *("design.turn", "design.turn_hint", "design.part", "design.part_hint"),
+    *("design.turn", "design.turn_hint", "design.parts", "design.parts_hint"),
     *("design.right", "design.right_hint", "design.up", "design.up_hint"),
     *("export.title", "export.table", "export.picture", "export.lines", "export.film"),
     *("compare.title", "compare.text", "compare.laws", "compare.obstruction", "compare.run"),

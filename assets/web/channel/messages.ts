@@ -154,8 +154,8 @@ export interface PathFile {
     right?: number
     /** coordinates of its middle in the plane of the path, [mm]. */
     up?: number
-    /** number of the wanted line of the file, from 1; 0: all of them. */
-    part?: number
+    /** numbers of the wanted lines of the file, from 1; none: all of them. */
+    parts?: number[]
 }
 
 /** A file will come in parts: the first after the answer to this, `FileMessage`, and each further one after the answer to

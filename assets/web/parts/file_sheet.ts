@@ -11,7 +11,7 @@ const KINDS = ".csv,.txt,.tsv,.svg,.gcode,.nc,.ngc,.gc,.tap,.cnc"
 const SIZE = 1000 // of the square in which lines are told
 const MARGIN = 40 // around it
 type PathFile = Required<Wished>
-const USUAL: PathFile = { kind: "path", size: 100, radius: 0, opened: false, turn: 0, right: 0, up: 0, part: 0 }
+const USUAL: PathFile = { kind: "path", size: 100, radius: 0, opened: false, turn: 0, right: 0, up: 0, parts: [] }
 const NUMBERS = { size: [0, 400, 5], radius: [0, 100, 1], turn: [-360, 360, 5], right: [-400, 400, 5], up: [-400, 400, 5] } as const
 type NumberName = keyof typeof NUMBERS
 const NAMES = Object.keys(NUMBERS) as NumberName[]
@@ -36,7 +36,10 @@ export function pathFromFile(texts: Texts, files: Files, chosen: ChosenFile, dro
         return { box, label: made("label", "row", made("span", "", phrase(texts, `design.${key}`)), box) }
     }
     const fields = Object.fromEntries(NAMES.map(name => [name, number(name, NUMBERS[name])])) as Record<NumberName, ReturnType<typeof number>>
-    const part = number("part", [0, 0, 1])
+    const parts = Object.assign(made("input", ""), { type: "text", title: phrase(texts, "design.parts_hint"), autocomplete: "off" })
+    parts.inputMode = "numeric"
+    parts.addEventListener("change", () => void follow())
+    const partsRow = made("label", "row", made("span", "", phrase(texts, "design.parts")), parts)
     const opened = switchInput({ title: phrase(texts, "design.open_hint") })
     opened.addEventListener("change", () => void follow())
     const chooser = Object.assign(made("input", ""), { type: "file", accept: KINDS, hidden: true })
@@ -55,7 +58,7 @@ export function pathFromFile(texts: Texts, files: Files, chosen: ChosenFile, dro
     const use = (): PathFile => {
         const limit = ({ box }: { box: HTMLInputElement }) => Math.min(Math.max(box.valueAsNumber || 0, Number(box.min)), Number(box.max))
         const numbers = Object.fromEntries(NAMES.map(name => [name, limit(fields[name])])) as Record<NumberName, number>
-        return { ...numbers, kind: "path", opened: opened.checked, part: chosen.lines.length > 1 ? limit(part) : 0 }
+        return { ...numbers, kind: "path", opened: opened.checked, parts: numbersIn(parts.value, chosen.lines.length) }
     }
     let isBusy = false, isStale = false
     const follow = async () => {
@@ -91,14 +94,13 @@ export function pathFromFile(texts: Texts, files: Files, chosen: ChosenFile, dro
     }
     /** Draw the lines of the file. */
     const draw = () => {
-        const { lines, use: { part: taken } } = chosen, isOne = lines.length < 2
-        part.label.hidden = isOne
-        part.box.max = String(lines.length)
-        part.box.valueAsNumber = taken
+        const { lines, use: { parts: taken } } = chosen, isOne = lines.length < 2
+        partsRow.hidden = isOne
+        parts.value = taken.join(", ")
         picture.style.display = lines.length ? "" : "none"
         picture.classList.toggle("many", !isOne)
         picture.replaceChildren(...lines.map((line, i) => svg("polyline", {
-            points: line.map((each, k) => (k % 2 ? SIZE - each : each)).join(" "), class: !taken || i + 1 === taken ? "taken" : "",
+            points: line.map((each, k) => (k % 2 ? SIZE - each : each)).join(" "), class: !taken.length || taken.includes(i + 1) ? "taken" : "",
         })))
     }
     picture.addEventListener("click", ({ clientX, clientY }) => {
@@ -106,8 +108,9 @@ export function pathFromFile(texts: Texts, files: Files, chosen: ChosenFile, dro
         const { left, top, width, height } = picture.getBoundingClientRect()
         const scale = (SIZE + 2 * MARGIN) / Math.min(width, height)
         const at = [(clientX - left - width / 2) * scale + SIZE / 2, SIZE / 2 - (clientY - top - height / 2) * scale] as const
-        const wanted = nearest(chosen.lines, at) + 1
-        part.box.valueAsNumber = wanted === chosen.use.part ? 0 : wanted // once more: all again
+        const pressed = nearest(chosen.lines, at) + 1, others = chosen.use.parts.filter(each => each !== pressed)
+        const isTaken = others.length < chosen.use.parts.length
+        parts.value = (isTaken ? others : [...others, pressed].sort((a, b) => a - b)).join(", ")
         void follow()
     })
     const take = (file: File | undefined) => {
@@ -136,11 +139,17 @@ export function pathFromFile(texts: Texts, files: Files, chosen: ChosenFile, dro
     const rows = NAMES.map(name => fields[name].label)
     sheet.body.append(
         made("p", "note", phrase(texts, "design.upload_hint")), made("div", "row", choose, chooser, bar), state, refusal, helps,
-        picture, part.label, ...rows, open,
+        picture, partsRow, ...rows, open,
     )
     sheet.open(choose)
     take(dropped)
     return sheet
+}
+
+/** The numbers of lines in a text, each once; none of a single line. */
+function numbersIn(text: string, count: number): number[] {
+    const numbers = (text.match(/\d+/g) ?? []).map(Number).filter(each => each >= 1 && each <= count)
+    return count > 1 ? [...new Set(numbers)] : []
 }
 
 /** Which line is the nearest to a point. */

@@ -31,7 +31,7 @@ test("what is set goes with the file, within its bounds", async () => {
     body.querySelector<HTMLInputElement>("[role=switch]")!.checked = true
     chosen(new File(["x,y"], "a.csv"))
     const { number, use } = sent[0] as SendFile
-    assert.deepEqual(use, { kind: "path", size: 400, radius: 0, opened: true, turn: 0, right: 0, up: 0, part: 0 })
+    assert.deepEqual(use, { kind: "path", size: 400, radius: 0, opened: true, turn: 0, right: 0, up: 0, parts: [] })
     assert.ok((found(body, "button", "design.upload") as HTMLButtonElement).disabled)
     assert.equal(body.querySelector("[role=status]")!.textContent, "design.reading")
     files.hear({ is: "file", number, state: "used", ...NOTHING })
@@ -99,7 +99,7 @@ test("a sheet that is closed gives its file up", async () => {
 
 const LINES = [[0, 0, 100, 100], [0, 500, 900, 500]]
 
-test("each line of a file is shown, and the one that is pressed is taken alone, or all again, of the file that the server has", async () => {
+test("each line of a file is shown; those that are pressed or typed are taken, and with none all, of the file that the server has", async () => {
     const { sent, files, body, chosen } = opened()
     chosen(new File(["x,y"], "a.svg"))
     const sends = () => sent.filter((each): each is SendFile => each.is === "send")
@@ -110,15 +110,23 @@ test("each line of a file is shown, and the one that is pressed is taken alone, 
     assert.equal(shown[0]!.getAttribute("points"), "0 1000 100 900")
     const picture = body.querySelector("svg.lines")!
     picture.getBoundingClientRect = () => ({ left: 10, top: 20, width: 1280, height: 1080 }) as DOMRect
-    const press = async () => {
-        picture.dispatchEvent(new MouseEvent("click", { clientX: 10 + 100 + 40 + 90, clientY: 20 + 40 + 850 }))
+    const press = async (...at: number[]) => {
+        if (at.length) picture.dispatchEvent(new MouseEvent("click", { clientX: 10 + 100 + 40 + at[0]!, clientY: 20 + 40 + at[1]! }))
         files.hear({ is: "file", number: sends().at(-1)!.number, state: "used", ...NOTHING, lines: LINES })
         await settled()
         return [...body.querySelectorAll("polyline")].map(line => line.getAttribute("class"))
     }
-    assert.deepEqual(await press(), ["taken", ""])
-    assert.deepEqual(await press(), ["taken", "taken"])
-    assert.deepEqual(sends().map(({ use }) => use.part), [0, 1, 0])
+    const first = [90, 850], second = [700, 520]
+    assert.deepEqual(await press(...second), ["", "taken"])
+    assert.deepEqual(await press(...first), ["taken", "taken"])
+    assert.deepEqual(await press(...second), ["taken", ""])
+    assert.deepEqual(await press(...first), ["taken", "taken"])
+    const typed = numberOf(body, "parts")
+    typed.value = "2, 7, 2"
+    typed.dispatchEvent(new Event("change"))
+    assert.deepEqual(await press(), ["", "taken"])
+    assert.equal(typed.value, "2")
+    assert.deepEqual(sends().map(({ use }) => use.parts), [[], [2], [1, 2], [1], [], [2]])
     assert.equal(sends()[1]!.again, sends()[0]!.number)
     sheet()!.remove()
 })
