@@ -1,4 +1,5 @@
-"""What a teacher's page says to its class, besides `SetField` with the names of its fields."""
+"""What a teacher's page says to its class, besides `SetField` with the names of its fields, and
+what its wall is told."""
 
 from __future__ import annotations
 
@@ -45,3 +46,20 @@ class Lead(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag=
 
     do: Order
     member: Annotated[int, Meta(ge=0)] = 0
+
+
+class WallMessage(Struct, frozen=True, tag_field="is", tag="wall"):
+    """What the class's wall shows besides the robots, whenever it changes. It has no names and,
+    until the teacher shows the answers, nothing that depends on them.
+
+    Attributes:
+        join: how students join: address, QR code and class code, as HTML.
+        asked: what the class is asked and, once they are shown, its answers, as HTML.
+        closing: seconds until the vote is closed; null if it is not being closed.
+        note: that the vote is closed; else empty.
+    """
+
+    join: str
+    asked: str
+    closing: int | None
+    note: str

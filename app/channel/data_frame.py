@@ -94,9 +94,14 @@ class DataFrame(Struct, frozen=True, eq=False):
 
 
 class FrameSource:
-    """Collects what one page is to be told of the lab that it shows."""
+    """Collects what one page is to be told of the lab that it shows.
 
-    def __init__(self) -> None:
+    Args:
+        tells_past: whether it is to know what happened before it looked on.
+    """
+
+    def __init__(self, *, tells_past: bool = True) -> None:
+        self._tells_past = tells_past
         self._latest = list[Sample]()  # the last one sent, and all since then
         self.fields: tuple[str, ...] = ()
         self.forget()
@@ -148,7 +153,7 @@ class FrameSource:
         if not self._anew and len(latest) == 1 and state == self._sent:
             return None
         new, earlier = latest if len(latest) == 1 else latest[1:], None
-        if self._anew or self._behind:
+        if self._tells_past and (self._anew or self._behind):
             since = -inf if self._anew else latest[0].time
             earlier = _earlier(simulation, since)
         frame = DataFrame(

@@ -14,7 +14,7 @@ from typing import Annotated, Any, Literal
 import msgspec
 from msgspec import UNSET, Meta, Struct
 
-from onpath.app.channel.class_messages import Lead
+from onpath.app.channel.class_messages import Lead, WallMessage
 from onpath.app.channel.file_messages import (
     DownloadMessage,
     DownloadPart,
@@ -212,6 +212,7 @@ LabMessage = (
     | Told
     | ClassMessage
     | SeatAnswer
+    | WallMessage
 )
 """What the server sends."""
 

@@ -28,12 +28,20 @@ IDLE = 60.0  # [s] without a command after which a student counts as idle
 
 
 def class_code(
-    address: str, is_local: bool, code: str, count: int, words: Words, large: bool = False
+    address: str,
+    is_local: bool,
+    code: str,
+    count: int | None,
+    words: Words,
+    large: bool = False,
+    wall: str = "",
 ) -> str:
     """The address of the class, as a QR code, too, and its code, in large type for the projector.
 
     Args:
         is_local: whether only this machine can open the address.
+        count: number of students; None: it is not told.
+        wall: address of the class's wall; empty: it is not told.
     """
     return render(
         "class/code.html",
@@ -43,6 +51,7 @@ def class_code(
         count=count,
         words=words,
         large=large,
+        wall=wall,
     )
 
 
@@ -200,9 +209,9 @@ def _with_unit(number: float, block: NumberQuestion, words: Words) -> str:
     return f"{words.number(number, 4)} {block.unit}".rstrip()
 
 
-def hidden_view(block: Asked, found: Distribution, words: Words, large: bool = False) -> str:
-    """The question, its options, and how many students have answered it."""
-    facts = given_line(found, words)
+def hidden_view(block: Asked, found: Distribution | None, words: Words, large: bool = False) -> str:
+    """The question, its options and, if it is to be told, how many students have answered it."""
+    facts = "" if found is None else given_line(found, words)
     if isinstance(block, Sketch | NumberQuestion):
         return render("class/prediction.html", block=block, facts=facts, large=large)
     return choices_view(block, (), revealed=False, words=words, large=large, facts=facts)

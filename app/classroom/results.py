@@ -67,6 +67,14 @@ def asked_at(lesson: Lesson, index: int) -> dict[str, Asked]:
     return {**predicted, **questions_of(lesson.steps[index], index)}
 
 
+def votes_at(lesson: Lesson, index: int, votes: Iterable[Vote]) -> list[Vote]:
+    """The votes on what a step asks; on what was asked again, the second ones."""
+    asked = asked_at(lesson, index)
+    found = [each for each in votes if each.lesson == lesson.name and each.item in asked]
+    again = {each.item for each in found if each.again}
+    return [each for each in found if each.again == (each.item in again)]
+
+
 def distribution(
     block: Asked,
     lesson: str,

@@ -12,6 +12,7 @@ from onpath.app.classroom.teaching.teacher_context import TeacherChoices, Teache
 from onpath.app.lab.commands import CloseLesson, ReportState, TakeSetup
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.setups.capture import capture
+from onpath.app.server.class_wall import ClassWall
 from onpath.app.server.followed_lab import FollowedLab
 from onpath.app.server.lab_registry import LabRegistry
 from onpath.app.server.page_context import ClassSeat
@@ -35,6 +36,7 @@ class ClassService:
         keeper: stores a student's lab on joining.
         visits: the numbers of the pages of the class.
         lost: called with the pages of the class when another process has taken it over.
+        send: sends what has been handed over for all pages.
     """
 
     def __init__(
@@ -46,11 +48,13 @@ class ClassService:
         keeper: WriteBehind | None = None,
         visits: Callable[[], set[int]] = set,
         lost: Callable[[set[int]], None] = lambda _: None,
+        send: Callable[[], None] = lambda: None,
     ) -> None:
         self._class, self._registry, self._course = classroom, registry, course
         self._records, self._keeper = records, keeper
         self._visits, self._lost = visits, lost
         self._places = dict[str, tuple[Visit, Callable[[str], None]]]()  # who asks for one, by lab
+        self.wall = ClassWall(classroom, course=course, registry=registry, send=send)
         self._attendance = ClassSync(classroom, self._student)
         self._attendance.rounds.start()
         self._class_keeper: ClassKeeper | None = None
@@ -61,6 +65,7 @@ class ClassService:
     def stop(self) -> None:
         """Stop, with the server."""
         self._attendance.rounds.stop()
+        self.wall.close()
         if self._class_keeper is not None:
             self._class_keeper.stop()
 

@@ -194,6 +194,11 @@ class LabRegistry:
                 self._opening.discard(code)
                 self._lock.notify_all()
 
+    def made_alone(self) -> ScheduledLab:
+        """A new lab that belongs to no browser, is not stored and cannot be entered."""
+        with self._making:
+            return ScheduledLab(self.make())
+
     def _made(self, code: str, state: LabState | None = None, language: str = "") -> RegisteredLab:
         """A new lab, or a restored one. Made one at a time, to spare the simulation.
 

@@ -34,7 +34,7 @@ from onpath.app.server.heap import limit_heap
 from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_registry import LabRegistry, RegisteredLab
 from onpath.app.server.new_lab import new_lab
-from onpath.app.server.own_part import own_part
+from onpath.app.server.own_part import own_part, screen_page
 from onpath.app.server.page_context import PageContext
 from onpath.app.server.page_data import PageData
 from onpath.app.server.page_text import PageText
@@ -87,7 +87,12 @@ class LabServer:
         self._course = options.course or built_in_course()
         self.thread = SimulationThread()
         self._watchdog, self._leases = Watchdog(options.hang_seconds), None  # see `_start`
-        self.visits = Visits(self._came, self._furnish, leave=lambda it: self.registry.leave(it))
+        self.visits = Visits(
+            self._came,
+            self._furnish,
+            leave=lambda it: self.registry.leave(it),
+            takes=lambda prefix, screen: not screen or self._classes.at(prefix) is not None,
+        )
         make_server(
             host,
             port,
@@ -98,6 +103,7 @@ class LabServer:
             health=partial(metrics_json, self.thread),
             trouble=lambda: self._watchdog.trouble,
             elsewhere=self._is_elsewhere,
+            screen=screen_page,
             limits=options.limits,
             allowed_origins=options.allowed_origins,
             trusted_proxies=options.trusted_proxies,
@@ -204,6 +210,7 @@ class LabServer:
             keeper=self._keeper,
             visits=partial(self.visits.under, prefix),
             lost=self._send_away,
+            send=self.visits.channel.send,
         )
 
     def _is_elsewhere(self, prefix: str) -> bool:
@@ -221,6 +228,9 @@ class LabServer:
         service = self._classes.at(visit.prefix)
         if service is not None and not service.greet(visit):
             self.visits.send_away({visit.number})
+            return
+        if service is not None and visit.screen:
+            service.wall.add(visit, site_for_students(visit.hello.site, self.site))
             return
         visit.at_end(partial(self._room.leave, visit.number))
         self._room.admit(

@@ -265,7 +265,7 @@ class PageData:
         if now == self._lit:
             return []
         self._lit = now
-        return [_text_of(_lit_message, self._symbol, robot, motion)]
+        return [_text_of(lit_message, self._symbol, robot, motion)]
 
     def _receive(self, text: str) -> bytes:
         """Post the command in a message; returns why not, if it is refused. On the event loop."""
@@ -325,7 +325,8 @@ class PageData:
         return b"" if answer is None else encoded(answer)
 
 
-def _lit_message(symbol: str, robot: Robot, motion: Motion) -> LitMessage:
+def lit_message(symbol: str, robot: Robot, motion: Motion) -> LitMessage:
+    """The message of what a symbol means."""
     lines = [
         np.rint(LENGTH * line).astype(int).tolist() for line in symbol_lines(symbol, robot, motion)
     ]

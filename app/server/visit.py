@@ -32,7 +32,7 @@ class Visit:
         left: called on the event loop when the page's own websocket has ended.
 
     Attributes:
-        address, prefix, language: of that connection; see `CountedConnection`.
+        address, prefix, screen, language: of that connection; see `CountedConnection`.
         stream: what the page is told.
         look: how its scene is to be drawn.
         presses: limit what it asks for that takes long.
@@ -52,6 +52,7 @@ class Visit:
     ) -> None:
         self.number, self.hello = number, hello
         self.address, self.prefix = connection.address, connection.prefix
+        self.screen = connection.screen
         self.language = connection.language
         self.stream = PageStream(channel, left)
         self.stream.receive = _no_lab

@@ -34,6 +34,7 @@ class Visits:
         come: called in a thread with each new visit, to give it its lab.
         furnish: called in a thread when viser's client of a page has come.
         leave: called with the number of a visit that ends, before its page can be back.
+        takes: whether a prefix and a screen are somebody's; see `CountedConnection`.
 
     Attributes:
         channel: the pages' own websockets.
@@ -44,7 +45,9 @@ class Visits:
         come: Callable[[Visit], None],
         furnish: Callable[[Visit], None],
         leave: Callable[[int], object],
+        takes: Callable[[str, str], bool] = lambda *_: True,
     ) -> None:
+        self._takes = takes
         self._come, self._furnish, self._leave = come, furnish, leave
         self.channel = DataChannel(self._greet)
         self._of_page = dict[str, Visit]()
@@ -81,10 +84,12 @@ class Visits:
         except (ValueError, RecursionError, MemoryError):
             return None
         visit = self._of_page.get(hello.page)
+        if not self._takes(connection.prefix, connection.screen):
+            return None
         if visit is None:
             visit = self._begun(hello, connection)
             run_in_thread(self._server, partial(self._come, visit))
-        elif visit.prefix != connection.prefix:
+        elif (visit.prefix, visit.screen) != (connection.prefix, connection.screen):
             return None
         else:
             connection.loop.call_soon(visit.renew)

@@ -1,7 +1,8 @@
 """The addresses of a lab behind a proxy: /c/CODE/ for a class, and /l/NAME/ for all others.
 
-All of them serve the same page. They let a proxy send everybody who belongs together to one
-process, by the path alone: viser's page opens its websocket at its own address.
+All of them serve the same page, but for /c/CODE/wall, the class's wall. They let a proxy send
+everybody who belongs together to one process, by the path alone: viser's page opens its websocket
+at its own address.
 
 An address has one spelling, in lower case and without a query, because a proxy may send another
 spelling of it to another process. A request for a page in another spelling is redirected, and a
@@ -19,9 +20,13 @@ from websockets.http11 import Request, Response
 from onpath.app.common.access_codes import new_code
 
 CLASS, ALONE = "c", "l"
+WALL = "wall"
+SCREENS = (WALL,)
+"""Pages of a class that have no lab of their own, by the last part of their address."""
 COOKIE = "onpath"  # name of the cookie that brings a browser back to its /l/NAME/
 _PLACE = re.compile(r"/([cl])/([a-z0-9]{1,32})(?=[/?]|$)", re.ASCII | re.IGNORECASE)
 _LIKE_A_PLACE = re.compile(r"/[cl](?:[/?]|$)", re.IGNORECASE)
+_SCREEN = re.compile(rf"/{CLASS}/[a-z0-9]{{1,32}}/({'|'.join(SCREENS)})", re.ASCII)
 _SOCKET = re.compile(r"/[cl]/[a-z0-9]{1,32}/?")
 _KNOWN = re.compile(rf"(?:^|;\s*){COOKIE}=([a-z0-9]{{12}})(?:;|$)")
 _START = ("/", "/index.html")
@@ -39,6 +44,12 @@ def class_link(code: str, prefix: str) -> str:
     return f"{up}{class_address(code)}"
 
 
+def screen_of(path: str) -> str:
+    """Which of `SCREENS` a path leads to; empty: to a lab, or to a file."""
+    found = _SCREEN.fullmatch(path)
+    return found[1] if found else ""
+
+
 def prefix_of(path: str) -> str:
     """The prefix in a path, "c/CODE" or "l/NAME"; empty if there is none."""
     found = _PLACE.match(path)
@@ -50,7 +61,8 @@ def takes_websocket(path: str) -> bool:
 
     viser's page omits the final slash.
     """
-    return bool(_SOCKET.fullmatch(path)) or not _LIKE_A_PLACE.match(path)
+    is_at_place = _SOCKET.fullmatch(path) or _SCREEN.fullmatch(path)
+    return bool(is_at_place) or not _LIKE_A_PLACE.match(path)
 
 
 def class_code_in(prefix: str) -> str:

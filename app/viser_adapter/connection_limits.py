@@ -18,6 +18,7 @@ from websockets.asyncio.server import ServerConnection
 from websockets.http11 import Request
 
 from onpath.app.common.allowance import Allowance
+from onpath.app.viser_adapter.addresses import screen_of
 from onpath.app.viser_adapter.limits import Limits
 from onpath.assets.messages import preferred
 
@@ -142,6 +143,7 @@ class ConnectionLimits:
         self._inside = PerAddress[CountedConnection](
             limits.max_connections, limits.max_connections_each
         )
+        self._screens = PerAddress[CountedConnection](limits.max_screens, limits.max_screens_each)
 
     def opened(self, connection: CountedConnection) -> None:
         """Count a new connection; if there are too many, close the oldest without a request."""
@@ -154,10 +156,11 @@ class ConnectionLimits:
         """Admit a connection with its request, if there is room. Returns whether it is admitted."""
         forwarded = request.headers.get_all("X-Forwarded-For")
         connection.address = self._proxies.client_address(connection.peer, forwarded)
-        if connection in self._waiting and self._inside.has_room(connection.address):
+        places = self._screens if screen_of(request.path) else self._inside
+        if connection in self._waiting and places.has_room(connection.address):
             self._waiting.discard(connection)
-            self._inside.add(connection, connection.address)
-        return connection in self._inside
+            places.add(connection, connection.address)
+        return connection in places
 
     def refusal(
         self, connection: CountedConnection, request: Request
@@ -181,8 +184,8 @@ class ConnectionLimits:
 
     def closed(self, connection: CountedConnection) -> None:
         """Stop counting a connection."""
-        self._waiting.discard(connection)
-        self._inside.discard(connection)
+        for places in (self._waiting, self._inside, self._screens):
+            places.discard(connection)
 
 
 class CountedConnection(ServerConnection):
@@ -195,14 +198,14 @@ class CountedConnection(ServerConnection):
     Attributes:
         peer: the address at its other end, which may be a proxy's.
         address: the client's, as the limits count it.
-        prefix: see addresses.py.
+        prefix, screen: see addresses.py.
     """
 
     def __init__(self, *args: Any, connections: ConnectionLimits, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
         self.logger = self.protocol.logger = logging.LoggerAdapter(_log, {})  # holds no connection
         self._connections = connections
-        self.peer = self.address = self.prefix = ""
+        self.peer = self.address = self.prefix = self.screen = ""
 
     @property
     def language(self) -> str:

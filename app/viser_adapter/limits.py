@@ -29,6 +29,8 @@ class Limits:
         max_connections: in total, including those that request a file.
         max_connections_each: per address; sixty students behind one address have five each,
             two of which are the websockets of a page.
+        max_screens: walls of classes, in total, which others cannot take the places of.
+        max_screens_each: of those, per address.
         max_waiting: of further connections that have not sent a complete request yet.
         max_waiting_each: of those, per address.
         tabs_per_second_each: sustained rate of new websockets, per address.
@@ -49,6 +51,8 @@ class Limits:
     max_magnitude: float = 1e9
     max_connections: int = 700  # with the waiting ones below 1024, a common limit on open files
     max_connections_each: int = 300
+    max_screens: int = 40
+    max_screens_each: int = 20
     max_waiting: int = 250
     max_waiting_each: int = 200
     tabs_per_second_each: float = 5.0

@@ -63,19 +63,23 @@ def our_scripts(course_url: str = "") -> bytes:
 
 
 def words(course_url: str = "") -> bytes:
-    """The messages of browser_words.js in every language, as an element with JSON.
+    """`messages` as an element with JSON."""
+    text = msgspec.json.encode(messages(course_url)).replace(b"<", b"\\u003c")
+    return b'<script id="op-words" type="application/json">%b</script>\n' % text
+
+
+def messages(course_url: str = "") -> dict[str, dict[str, str]]:
+    """The messages of browser_words.js in every language.
 
     Args:
         course_url: address of the course as pages without a server; empty if there is none.
     """
     filled = {"origin": "{origin}"}  # by the page
-    messages = {
+    return {
         code: {key.partition(".")[2]: catalogue(code).text(key, filled) for key in SAID}
         | {"course_url": course_url}
         for code in languages()
     }
-    text = msgspec.json.encode(messages).replace(b"<", b"\\u003c")
-    return b'<script id="op-words" type="application/json">%b</script>\n' % text
 
 
 @lru_cache(maxsize=4)

@@ -15,6 +15,7 @@ import time
 from collections.abc import Awaitable, Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import partial
+from http import HTTPStatus
 from pathlib import Path
 from typing import Any
 
@@ -28,7 +29,13 @@ from websockets.http11 import Request, Response
 from websockets.typing import Subprotocol
 
 from onpath.app.common.error_log import log_error
-from onpath.app.viser_adapter.addresses import not_here, prefix_of, redirection, without_prefix
+from onpath.app.viser_adapter.addresses import (
+    not_here,
+    prefix_of,
+    redirection,
+    screen_of,
+    without_prefix,
+)
 from onpath.app.viser_adapter.connection_limits import ConnectionLimits, Proxies
 from onpath.app.viser_adapter.connections import connection_of
 from onpath.app.viser_adapter.data_channel import FAMILY, SUBPROTOCOL, DataChannel
@@ -73,6 +80,7 @@ def make_server(
     health: Callable[[str], str] = well,
     trouble: Callable[[], str] = str,
     elsewhere: Callable[[str], bool] = lambda _: False,
+    screen: Callable[[str, str], str] = lambda *_: "",
     channel: DataChannel | None = None,
     prepare: Callable[[viser.ViserServer], None] = lambda _: None,
     course_url: str = "",
@@ -90,6 +98,7 @@ def make_server(
             a folder of its own.
         health, trouble: see `RequestFilter`.
         elsewhere: whether another process serves a prefix; a websocket there is answered 502.
+        screen: the page of one of `addresses.SCREENS`, given its name and a language.
         channel: the data channels of the pages, if they have any.
         prepare: called with the server; all requests wait until it has returned.
         course_url: see `page_scripts.words`.
@@ -118,6 +127,7 @@ def make_server(
         counts=connections,
         set_prefix=set_prefix,
         elsewhere=elsewhere,
+        screen=screen,
         channel=DataChannel() if channel is None else channel,
         course_url=course_url,
         scripts=scripts,
@@ -192,7 +202,8 @@ def _set_prefix(
     is_tab = "Upgrade" in request.headers
     if redirects and (response := redirection(connection, request, spreads)):
         return response
-    connection.prefix, request.path = prefix_of(request.path), without_prefix(request.path)
+    connection.screen, connection.prefix = screen_of(request.path), prefix_of(request.path)
+    request.path = without_prefix(request.path)
     return not_here(connection) if is_tab and elsewhere(connection.prefix) else None
 
 
@@ -229,6 +240,15 @@ def _options(limits: Limits) -> dict[str, Any]:
     }
 
 
+def _screen_page(connection: SecureConnection, screen: Callable[[str, str], str]) -> Response:
+    """The page of a class's wall, whether or not there is such a class."""
+    response = connection.respond(HTTPStatus.OK, screen(connection.screen, connection.language))
+    del response.headers["Content-Type"]
+    response.headers["Content-Type"] = "text/html; charset=utf-8"
+    response.headers["Cache-Control"] = "no-store"
+    return response
+
+
 _patching = threading.Lock()
 
 
@@ -240,6 +260,7 @@ def _guarded_serve(
     counts: ConnectionLimits,
     set_prefix: Callable[[SecureConnection, Request], Response | None],
     elsewhere: Callable[[str], bool],
+    screen: Callable[[str, str], str],
     channel: DataChannel,
     course_url: str,
     scripts: bytes,
@@ -263,6 +284,8 @@ def _guarded_serve(
                 return connection.respond(*answer)
             if response := set_prefix(connection, request):
                 return response
+            if connection.screen and "Upgrade" not in request.headers:
+                return _screen_page(connection, screen)
             return add_scripts(process_request(connection, request), course_url, scripts)
 
         options |= _options(limits)

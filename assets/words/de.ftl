@@ -324,6 +324,7 @@ class-unknown = { $count } haben eine frühere Fassung der Frage beantwortet; wa
 class-open_address = Öffne diese Adresse und gib einen Spitznamen ein:
 class-only_here = Nur dieser Rechner kann sie öffnen. Für andere starte mit --host 0.0.0.0.
 class-qr = QR-Code dieser Adresse
+class-wall = Ansicht für den Beamer öffnen, ohne Knöpfe und ohne Namen
 class-count = { $count } in der Klasse
 class-name = Spitzname
 class-lesson = Lektion

@@ -326,6 +326,7 @@ class-unknown = { $count } answered an earlier version of the question; their ch
 class-open_address = Open this address and type a nickname:
 class-only_here = Only this computer can open it. To let others in, start with --host 0.0.0.0.
 class-qr = QR code of this address
+class-wall = Open the wall for the projector, without controls or names
 class-count = { $count } in the class
 class-name = Nickname
 class-lesson = Lesson

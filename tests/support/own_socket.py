@@ -76,6 +76,11 @@ class OwnSocket:
         """The kinds of the messages so far."""
         return {message["is"] for message in list(self.told)}
 
+    @property
+    def code(self) -> int | None:
+        """With which the server has closed it."""
+        return self._socket.close_code
+
     def _read(self) -> None:
         saw = 0.0
         with suppress(ConnectionClosed):

@@ -1,13 +1,15 @@
-"""The class's answers to a step, without names, for the teacher's page."""
+"""The class's answers to a step, without names, for the teacher's page and for the wall."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import ceil, inf
+from typing import Protocol
 
 from onpath.app.classroom import class_html as page
-from onpath.app.classroom.classroom import MOST_MEMBERS, Display
+from onpath.app.classroom.classroom import MOST_MEMBERS, Classroom, Display
 from onpath.app.classroom.concept_test_results import gain_view, item_distribution, question_at
 from onpath.app.classroom.results import (
     Asked,
@@ -16,11 +18,12 @@ from onpath.app.classroom.results import (
     distribution,
     is_asked_again,
     truth_of,
+    votes_at,
 )
 from onpath.app.classroom.sketches_html import Picks
 from onpath.app.classroom.teaching.lesson_labels import step_label
 from onpath.app.classroom.teaching.steps_for_all import StepsForAll
-from onpath.app.classroom.teaching.teacher_context import TeacherContext
+from onpath.app.classroom.teaching.teacher_context import TeacherChoices
 from onpath.app.lab.dry_runs.step_truth import computed_truth
 from onpath.lessons.concept_test.concept_test import TESTS
 from onpath.lessons.course import Course
@@ -39,6 +42,25 @@ class Students:
     here: list[bool]
 
 
+class Onlooker(Protocol):
+    """Where the answers are shown; see `TeacherContext`."""
+
+    @property
+    def classroom(self) -> Classroom:
+        """The class."""
+        ...
+
+    @property
+    def chosen(self) -> TeacherChoices:
+        """What has been picked."""
+        ...
+
+    @property
+    def progress(self) -> Callable[[], Progress]:
+        """Of the lab that is shown there."""
+        ...
+
+
 class ClassAnswers:
     """The answers to the displayed question.
 
@@ -50,7 +72,7 @@ class ClassAnswers:
         self,
         course: Course,
         words: Words,
-        teaching: TeacherContext,
+        teaching: Onlooker,
         submit: Callable[[Callable[[], None]], None] = lambda work: work(),
     ) -> None:
         self._course, self._words, self._teaching = course, words, teaching
@@ -62,11 +84,18 @@ class ClassAnswers:
         classroom = self._teaching.classroom
         return classroom.display.seen(classroom.now())
 
-    def view(self, large: bool) -> str:
-        """The answers to what the displayed step asks, or to a question of a test."""
+    def view(self, large: bool, *, silent: bool = False) -> str:
+        """The answers to what the displayed step asks, or to a question of a test.
+
+        Args:
+            silent: tell nothing of answers that are not shown, not even how many there are, nor
+                whether the votes are closed; see `closing`.
+        """
         steps = StepsForAll(self._course, self._words.language)
         name, index = steps.shown(self._display)
         lesson = self._course.lesson(name, self._words.language)
+        if silent and not self._display.shown:
+            return self._asked(lesson, index, large)
         members = list(self._teaching.classroom.present().values())
         students = Students(
             [of_today(self._course, member.progress) for member in members],
@@ -74,14 +103,42 @@ class ClassAnswers:
         )
         if name in self._course.tests:
             return self._test(lesson, index, students.progress, large)
-        views = [
-            self._question(lesson, item, block, students, large)
-            if isinstance(block, Quiz | NumberQuestion)
-            else self._prediction(lesson, int(item), block, students, large)
-            for item, block in asked_at(lesson, index).items()
-        ]
+        views = list[str]()
+        for item, block in asked_at(lesson, index).items():
+            if isinstance(block, Quiz | NumberQuestion):
+                views.append(self._question(lesson, item, block, students, large))
+            else:
+                views.append(self._prediction(lesson, int(item), block, students, large))
+        if not silent:
+            views += self._of_votes(lesson, index)
         title = step_label(lesson, index, self._words)
         return "".join(views) or page.step_view(title, self._words("class.no_prediction"), large)
+
+    def _asked(self, lesson: Lesson, index: int, large: bool) -> str:
+        """What the step asks, or the question of a test."""
+        words, blocks = self._words, asked_at(lesson, index).values()
+        if lesson.name in self._course.tests:
+            return page.hidden_view(question_at(lesson, index), None, words, large)
+        views = [page.hidden_view(block, None, words, large) for block in blocks]
+        return "".join(views) or page.step_view(step_label(lesson, index, words), "", large)
+
+    def closing(self) -> tuple[int | None, str]:
+        """In how many seconds the votes on the displayed step are closed, and that they are.
+
+        None: they are open or closed; an empty text: they are not closed.
+        """
+        steps = StepsForAll(self._course, self._words.language)
+        name, index = steps.shown(self._display)
+        lesson, classroom = (
+            self._course.lesson(name, self._words.language),
+            self._teaching.classroom,
+        )
+        times = [each.closes for each in votes_at(lesson, index, classroom.votes)]
+        last = max((inf if each is None else each for each in times), default=inf)
+        left = last - classroom.now()
+        if left == inf:
+            return None, ""
+        return (ceil(left), "") if left > 0 else (None, self._words("class.closed"))
 
     def _test(self, test: Lesson, index: int, students: list[Progress], large: bool) -> str:
         """A question of the test, answered before and after the course, and the class's gain."""
@@ -108,12 +165,10 @@ class ClassAnswers:
         words, display = self._words, self._display
         found = self._counted(block, lesson.name, item, students)
         if not display.shown:
-            view = page.hidden_view(block, found, words, large)
-        elif isinstance(block, Quiz):
-            view = page.choices_view(block, [("", found)], display.revealed, words, large)
-        else:
-            view = page.numbers_view(block, found, display.revealed, words, large)
-        return view + self._of_vote(lesson.name, item)
+            return page.hidden_view(block, found, words, large)
+        if isinstance(block, Quiz):
+            return page.choices_view(block, [("", found)], display.revealed, words, large)
+        return page.numbers_view(block, found, display.revealed, words, large)
 
     def _counted(
         self, block: Asked, lesson: str, item: str, students: Students, again: bool = False
@@ -123,12 +178,12 @@ class ClassAnswers:
             block, lesson, item, students.progress, again=again, here=students.here, vote=vote
         )
 
-    def _of_vote(self, lesson: str, item: str, again: bool = False) -> str:
-        """Whether the vote is closing or closed."""
+    def _of_votes(self, lesson: Lesson, index: int) -> list[str]:
+        """Whether the votes on a step are closing or closed."""
         classroom = self._teaching.classroom
-        vote = vote_on(classroom.votes, lesson, item, again)
-        line = "" if vote is None else page.vote_line(vote, classroom.now(), self._words)
-        return page.remark(line) if line else ""
+        votes = votes_at(lesson, index, classroom.votes)
+        lines = [page.vote_line(each, classroom.now(), self._words) for each in votes]
+        return [page.remark(line) for line in lines if line]
 
     def _prediction(
         self, lesson: Lesson, at: int, block: Prediction, students: Students, large: bool
@@ -142,16 +197,15 @@ class ClassAnswers:
         second, again = None, is_asked_again(lesson.name, at, students.progress)
         if again:
             second = self._counted(block, lesson.name, item, students, again=True)
-        closing = self._of_vote(lesson.name, item, again)
         if not display.shown:
-            return page.hidden_view(block, second or first, words, large) + closing
+            return page.hidden_view(block, second or first, words, large)
         laws = lesson.laws_shown(at)
         picks = self._picks(lesson.name, at, first, second)
         view = page.prediction_view(
             block, first, truth, revealed, words, large, laws=laws, second=second, picks=picks
         )
         missing = revealed and not first.counts and truth is None
-        return view + (page.remark(words("class.no_truth")) if missing else "") + closing
+        return view + (page.remark(words("class.no_truth")) if missing else "")
 
     def _picks(
         self, lesson: str, at: int, first: Distribution, second: Distribution | None

@@ -24,6 +24,7 @@ from onpath.app.classroom.teaching.lesson_labels import lesson_titles, step_labe
 from onpath.app.classroom.teaching.steps_for_all import StepsForAll
 from onpath.app.classroom.teaching.teacher_context import TeacherChoices, TeacherContext
 from onpath.app.lab.commands import TakeStep
+from onpath.app.viser_adapter.addresses import WALL
 from onpath.lessons.course import Course
 from onpath.lessons.pace import Pace
 from onpath.lessons.words import Words
@@ -248,6 +249,7 @@ class TeacherForm:
             count=len(members),
             words=words,
             large=large,
+            wall="" if large else WALL,
         )
         yield "code", code
         yield "table", page.table(members, self._course, classroom.clock(), words)

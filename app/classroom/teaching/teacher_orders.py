@@ -14,7 +14,12 @@ from onpath.app.classroom.class_record import class_record
 from onpath.app.classroom.classroom import Display
 from onpath.app.classroom.concept_test_results import sheets_without_names
 from onpath.app.classroom.gains_html import PAIRS
-from onpath.app.classroom.results import asked_at, have_all_answered, prediction_at
+from onpath.app.classroom.results import (
+    asked_at,
+    have_all_answered,
+    prediction_at,
+    votes_at,
+)
 from onpath.app.classroom.teaching.class_answers import picked
 from onpath.app.classroom.teaching.steps_for_all import StepsForAll
 from onpath.app.classroom.teaching.teacher_context import TeacherContext
@@ -159,12 +164,10 @@ class TeacherOrders:
 
     @property
     def _votes(self) -> list[Vote]:
-        """The votes on what the displayed step asks; on what was asked again, the second ones."""
+        """The votes on what the displayed step asks."""
         name, index = self._steps.shown(self._class.display)
-        asked = asked_at(self._course.lesson(name, self._words.language), index)
-        votes = [each for each in self._class.votes if each.lesson == name and each.item in asked]
-        again = {each.item for each in votes if each.again}
-        return [each for each in votes if each.again == (each.item in again)]
+        lesson = self._course.lesson(name, self._words.language)
+        return votes_at(lesson, index, self._class.votes)
 
     def _close(self) -> float:
         """Close the votes of the displayed step, and return when they are closed.

@@ -11,7 +11,7 @@ import { RemoteSettings } from "./settings"
 import {
     PROTOCOL, type Ask, type ClassMessage, type Command, type Compared, type CompareSheet, type DisplaySheet, type FrameMessage, type Hello, type HelpSheet, type Index, type KeepSheet,
     type LabMessage, type LawSheet, type LessonMessage, type LessonSheet, type Light, type MeasuredMessage, type PageMessage, type PathMessage,
-    type RobotSheet, type SeatAnswer, type StateMessage, type Told, type WordsMessage,
+    type RobotSheet, type SeatAnswer, type StateMessage, type Told, type WallMessage, type WordsMessage,
 } from "./messages"
 
 const SECONDS = 60 // [s] of samples that are kept
@@ -159,6 +159,8 @@ export class RemoteEngine implements Engine {
     /** The open step of a lesson, and what is measured in it; null until they are known. */
     lesson: LessonMessage | null = null
     measured: MeasuredMessage | null = null
+    /** What a class's wall shows besides the robots; null until it is known, and on other pages. */
+    wall: WallMessage | null = null
     /** The lab's place in a class; null until it is known. */
     seat: ClassMessage | null = null
     /** Whether the page has offered to join the class. */
@@ -184,8 +186,8 @@ export class RemoteEngine implements Engine {
     private readonly news = new Set<(news: News) => void>()
     private readonly listeners = new Set<(change: Change) => void>()
 
-    /** How the page is drawn: dark, in software, in an upright window. */
-    constructor(private readonly drawn: () => { dark: boolean; plain: boolean; upright: boolean }) {}
+    /** How the page is drawn: dark, in software, in an upright window. `asks`: else it is told all that it shows unasked. */
+    constructor(private readonly drawn: () => { dark: boolean; plain: boolean; upright: boolean }, private readonly asks = true) {}
 
     /** Have the lab tell its form and the values of its fields. */
     askForm(): void {
@@ -221,7 +223,7 @@ export class RemoteEngine implements Engine {
     }
 
     private get greeting(): Hello {
-        const { page } = this, [labs, teacher, speaks, sounds, first_minute] = KEPT.map(kept)
+        const { page } = this, [labs, teacher, speaks, sounds, first_minute] = this.asks ? KEPT.map(kept) : []
         return { is: "hello", page, site: siteOf(location), ...this.drawn(), labs, teacher, speaks, sounds, first_minute }
     }
 
@@ -303,6 +305,7 @@ export class RemoteEngine implements Engine {
 
     /** Without a picture of the robots, their bars are asked for, too. */
     private askLines(): void {
+        if (!this.asks) return
         const asked = AT_JOINTS.find(each => each === this.pointed) ?? (this.lab?.drawn === false ? "bars" : "")
         if (asked === this.symbol) return
         this.symbol = asked
@@ -405,6 +408,9 @@ export class RemoteEngine implements Engine {
         }
         else if (message.is === "class") {
             this.seat = message
+            this.tell("class")
+        } else if (message.is === "wall") {
+            this.wall = message
             this.tell("class")
         } else if (message.is === "store") keep(message.key, message.value)
         else if (message.is === "refused") console.warn(`refused: ${message.why}`)

@@ -39,15 +39,15 @@ export class Connection {
     private slept = false
     private checked = Date.now() // a page's own time may stand still while it sleeps
     private heard = 0
-    private readonly picture = new PictureLink()
 
-    constructor(private readonly engine: RemoteEngine) {
+    /** `picture`: that of the robots, which viser draws; null on a page without it. */
+    constructor(private readonly engine: RemoteEngine, private readonly picture: PictureLink | null) {
         this.box.setAttribute("role", "status")
-        sayToViser(() => `${engine.page}.${this.picture.asked}`)
-        for (const event of ["online", "focus", "pageshow"]) addEventListener(event, () => this.picture.soon())
+        if (picture) sayToViser(() => `${engine.page}.${picture.asked}`)
+        for (const event of ["online", "focus", "pageshow"]) addEventListener(event, () => picture?.soon())
         document.addEventListener("visibilitychange", () => {
             this.quiet = 0
-            this.picture.soon()
+            picture?.soon()
         })
     }
 
@@ -72,12 +72,12 @@ export class Connection {
             this.found = null
             this.asked = now
         }
-        if (engine.connected && engine.lab && !this.final) picture.check(now, engine.lab.scene)
-        if (picture.outdated) this.reload()
+        if (engine.connected && engine.lab && !this.final) picture?.check(now, engine.lab.scene)
+        if (picture?.outdated) this.reload()
         this.say(this.cause(isThere))
         const { classList } = document.documentElement
         classList.toggle("op-lost", this.wasThere && !isThere)
-        classList.toggle("op-no-picture", !picture.isThere)
+        if (picture) classList.toggle("op-no-picture", !picture.isThere)
     }
 
     /** Count how long nothing has come, or too slowly; a page that stands still itself counts as one check. */
@@ -102,6 +102,7 @@ export class Connection {
         if (engine.waits) return "waits"
         if (!isThere) return this.wasThere ? "back" : "building"
         if (Math.max(this.quiet, this.late) > SLOW) return "slow"
+        if (!picture) return null
         if (!webgl.works) return "no_webgl"
         return picture.isThere ? null : picture.wasThere ? "picture_back" : "loading"
     }
@@ -131,7 +132,7 @@ export class Connection {
         this.asked = performance.now()
         this.engine.close()
         this.engine.open()
-        this.picture.renew()
+        this.picture?.renew()
     }
 
     /** Ask the server why our websocket does not open: a browser does not tell. */
@@ -165,7 +166,7 @@ export class Connection {
 }
 
 /** The robots' picture: viser's websocket, and whether its page is there. It is asked for once the lab is there. */
-class PictureLink {
+export class PictureLink {
     /** Whether viser's page is of another version than its server. */
     outdated = false
     /** Whether the picture has been there. */

@@ -900,6 +900,20 @@ export interface SeatAnswer {
     address: string
 }
 
+/** What the class's wall shows besides the robots, whenever it changes. It has no names and, until the teacher shows the
+ * answers, nothing that depends on them. */
+export interface WallMessage {
+    is: "wall"
+    /** how students join: address, QR code and class code, as HTML. */
+    join: string
+    /** what the class is asked and, once they are shown, its answers, as HTML. */
+    asked: string
+    /** seconds until the vote is closed; null if it is not being closed. */
+    closing: number | null
+    /** that the vote is closed; else empty. */
+    note: string
+}
+
 /** A message with only the fields that have changed. */
 export type Changes<Message extends { is: string }> = Pick<Message, "is"> & Partial<Message>
 
@@ -934,3 +948,4 @@ export type LabMessage =
     | Told
     | ClassMessage
     | SeatAnswer
+    | WallMessage

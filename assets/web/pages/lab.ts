@@ -8,7 +8,7 @@ import { retone } from "../core/ink"
 import { phrase, significant, written, type Texts } from "../core/words"
 import { RemoteEngine } from "../channel/channel"
 import type { Command, PageMessage } from "../channel/messages"
-import { Connection } from "../channel/connection"
+import { Connection, PictureLink } from "../channel/connection"
 import { ClassPanel } from "../parts/class_panel"
 import { Column } from "../parts/column"
 import { Downloads } from "../parts/downloads"
@@ -248,7 +248,7 @@ class Face {
 function showLab(): void {
     const root = document.documentElement
     const scheme = new Scheme()
-    const engine = new RemoteEngine(() => ({ dark: scheme.dark, plain: webgl.plain, upright: UPRIGHT.matches })), connection = new Connection(engine)
+    const engine = new RemoteEngine(() => ({ dark: scheme.dark, plain: webgl.plain, upright: UPRIGHT.matches })), connection = new Connection(engine, new PictureLink())
     let face: Face | null = null
     let words: Texts | null = null, reopen = "", calmed = !matchMedia("(prefers-reduced-motion: reduce)").matches
     root.classList.add("op-loading")

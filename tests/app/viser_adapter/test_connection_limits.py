@@ -8,6 +8,7 @@ import socket
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from functools import partial
+from typing import Any
 
 import pytest
 import viser
@@ -146,6 +147,20 @@ def test_a_client_that_is_gone_before_its_request_is_read_takes_no_room() -> Non
     assert not connections.admits(hasty, request)  # type: ignore[arg-type]
     connections.opened(patient)  # type: ignore[arg-type]
     assert connections.admits(patient, request)  # type: ignore[arg-type]
+
+
+def test_students_take_no_place_of_a_wall_and_walls_none_of_students() -> None:
+    limits = Limits(max_connections=2, max_connections_each=2, max_screens=2, max_screens_each=2)
+    connections, paths = ConnectionLimits(limits, Proxies()), ("/c/abc/", "/c/abc/wall")
+    for path in (*paths, *paths):
+        assert admits(connections, path)
+    assert not any(admits(connections, path) for path in paths)
+
+
+def admits(connections: ConnectionLimits, path: str) -> bool:
+    connection: Any = CountedConnection()
+    connections.opened(connection)
+    return connections.admits(connection, Request(path, Headers()))
 
 
 @pytest.mark.parametrize(

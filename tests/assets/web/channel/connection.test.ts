@@ -28,7 +28,7 @@ class FakeWorker extends EventTarget {
 Object.assign(globalThis, {
     Worker: FakeWorker, webgl: { works: true, plain: false }, ownWords: { text: () => new Proxy({}, { get: (_, key) => String(key) }), language: () => "en" },
 })
-const { Connection } = await import("../../../../assets/web/channel/connection")
+const { Connection, PictureLink } = await import("../../../../assets/web/channel/connection")
 
 /** A page with a lab whose websocket is open, and its worker. */
 function opened(): { wait: (ms: number, jump?: number) => void; worker: FakeWorker; engine: { heard: number; closed: number } } {
@@ -36,7 +36,7 @@ function opened(): { wait: (ms: number, jump?: number) => void; worker: FakeWork
         connected: true, isOpen: true, outdated: false, refused: 0, waits: "", page: "a", heard: 0, closed: 0, state: { running: true },
         lab: { rate: 1, achieved: 1, scene: 0 }, open: () => {}, close: () => engine.closed++,
     }
-    const connection = new Connection(engine as unknown as RemoteEngine)
+    const connection = new Connection(engine as unknown as RemoteEngine, new PictureLink())
     new Worker("viser.js").postMessage({ type: "set_server" }) // oxlint-disable-line unicorn/require-post-message-target-origin
     const wait = (ms: number, jump = 0) => {
         date += jump
