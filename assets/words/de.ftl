@@ -1917,7 +1917,7 @@ robot_file-same_name = { $name } heißt schon ein anderer Roboter
 robot_file-absent_robot = diese Einstellung ist für den Roboter { $name } aus einer Datei: Starten Sie das Labor mit { $line } und mit den Optionen, mit denen es dort gestartet wurde
 robot_file-and_more = { $names } und { $more } weitere
 robot_file-still = Gelenke ohne Weg zwischen ihren Grenzen bleiben stehen: { $names }
-robot_file-not_drawn = nicht gezeichnet, weil es im Ordner oder Paket des Roboters keine solche .stl-, .obj- oder .dae-Datei bis 20 MB gibt oder die Größe fehlt: { $names }
+robot_file-not_drawn = nicht gezeichnet, weil es im Ordner oder Paket des Roboters keine solche .stl-, .obj-, .dae- (URDF) oder .msh-Datei (MJCF) bis 20 MB gibt oder die Größe fehlt: { $names }
 robot_file-guessed_package = Netze liegen im Paket { $package }, das nicht bekannt ist
 robot_file-guessed_mass = die Datei nennt für manche Körper keine Masse: Sie gelten als Körper mit { $density } kg/m³, zusammen { $mass } kg: { $names }
 robot_file-guessed_mass_without = die Datei nennt für manche Körper keine Masse, und ein Paket, das ihre Netze liest, ist nicht installiert: Sie gelten als Körper mit { $density } kg/m³, zusammen { $mass } kg: { $names }
@@ -1945,7 +1945,6 @@ robot_file-guessed_limits = Gelenke, für die die Datei keine Grenzen nennt oder
 robot_file-mesh_unreadable = das Netz { $mesh } wird weggelassen: { $reason }
 robot_file-refused = <{ $element }> wird nicht gelesen, weil es andere Dateien lesen, Code ausführen oder aus einem Element viele machen kann: Lassen Sie es weg, oder laden Sie die Datei in MuJoCo und speichern Sie sie mit einfachen Elementen
 robot_file-unknown = in <{ $parent }> gibt es kein solches Element
-robot_file-mesh = das Netz { $mesh } ist keine .stl-, .obj- oder .msh-Datei von bis zu 20 MB im Ordner oder Paket des Roboters (--package NAME=ORDNER; in Python packages=…)
 robot_file-meshes = die Netze haben mehr als { $most }
 robot_file-left_out = weggelassen: { $parts }
 

@@ -1500,7 +1500,7 @@ robot_file-same_name = { $name } is the name of another robot
 robot_file-absent_robot = this set-up is for the robot { $name }, which comes from a file: start the lab with { $line }, and with the options that it was started with there
 robot_file-and_more = { $names } and { $more } more
 robot_file-still = joints without travel between their limits stay still: { $names }
-robot_file-not_drawn = not drawn, because there is no such .stl, .obj or .dae file of up to 20 MB in the robot's folder or package, or it has no size: { $names }
+robot_file-not_drawn = not drawn, because there is no such .stl, .obj, .dae (URDF) or .msh (MJCF) file of up to 20 MB in the robot's folder or package, or it has no size: { $names }
 robot_file-guessed_package = meshes are in the package { $package }, which is not known
 robot_file-guessed_mass = the file states no masses of some bodies: they are taken for solids of { $density } kg/m³, together { $mass } kg: { $names }
 robot_file-guessed_mass_without = the file states no masses of some bodies, and a package that reads their meshes is not installed: they are taken for solids of { $density } kg/m³, together { $mass } kg: { $names }
@@ -1528,7 +1528,6 @@ robot_file-guessed_limits = joints for which the file states no limits, or both 
 robot_file-mesh_unreadable = the mesh { $mesh } is left out: { $reason }
 robot_file-refused = <{ $element }> is not read, because it can read other files, run code or make many elements of one: leave it out, or load the file in MuJoCo and save it as plain elements
 robot_file-unknown = there is no such element in <{ $parent }>
-robot_file-mesh = the mesh { $mesh } is not a .stl, .obj or .msh file of up to 20 MB in the folder or package of the robot (--package NAME=FOLDER; in Python, packages=…)
 robot_file-meshes = the meshes have more than { $most }
 robot_file-left_out = left out: { $parts }
 

@@ -3,12 +3,13 @@
 What moves, weighs or is drawn is passed on: bodies, joints, geoms, sites, meshes, actuators of
 joints, defaults and keyframes. What is left of a model (sensors, contacts, pictures, …) is left
 out, and what would read other files, run code or make many elements of one is refused. Meshes are
-read here, from the robot's folder only, and MuJoCo gets their content: it opens no file.
+read here, from the robot's folder only, and MuJoCo gets their content: it opens no file. Geoms of
+meshes that are not there are left out; a body of which nothing remains gets the mass of a dummy.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from xml.sax.saxutils import quoteattr
@@ -54,6 +55,7 @@ REFUSED = (
     *("model", "attach", "plugin", "extension", "replicate", "composite"),
     *("flexcomp", "deformable", "hfield"),
 )
+DUMMY = '<inertial pos="0 0 0" mass="1e-9" diaginertia="1e-9 1e-9 1e-9"/>'
 _NOT_PASSED: Mapping[str, tuple[str, ...]] = {
     "compiler": ("meshdir", "texturedir", "assetdir", "strippath", "discardvisual", "fusestatic")
     + ("usethread", "savecompiled"),
@@ -73,10 +75,12 @@ class CheckedModel:
     Attributes:
         text: an MJCF file, in which every element is in the line in which it was.
         meshes: content of the files that it names.
+        lacking: the files of meshes that are not there.
     """
 
     text: str
     meshes: Mapping[str, bytes]
+    lacking: Sequence[str]
 
 
 def checked_model(file: Path, root: Element, packages: Mapping[str, Path]) -> CheckedModel:
@@ -123,6 +127,12 @@ def _check_numbers(element: Element) -> None:
             raise FileFault(element, reason)
 
 
+def _mesh_name(element: Element) -> str:
+    """The name of a mesh, which is that of its file if it has none."""
+    file = PurePosixPath(element.values["file"].replace("\\", "/"))
+    return element.values.get("name", file.stem)
+
+
 class _Rewriter:
     """Writes the elements that are passed on."""
 
@@ -130,14 +140,19 @@ class _Rewriter:
         self._root = root
         self._folders = MeshFolders(file, packages, MESHES)
         self._meshes, self._size = dict[str, bytes](), 0
+        self._files = dict[str, str]()  # of meshes, by their names; "" for one that is not there
+        self._lacking = list[str]()
         self._parts, self._line = list[str](), 1
         compilers = [each.values for each in root.all("compiler")]
         self._compiler = {name: value for each in compilers for name, value in each.items()}
 
     def written(self) -> CheckedModel:
         """The whole file."""
+        for element in all_elements(self._root):
+            if element.tag == "mesh" and "file" in element.values:
+                self._files[_mesh_name(element)] = self._file(element)
         self._write(self._root)
-        return CheckedModel("".join(self._parts), self._meshes)
+        return CheckedModel("".join(self._parts), self._meshes, self._lacking)
 
     def _write(self, element: Element) -> None:
         tag, values = element.tag, dict(element.values)
@@ -148,11 +163,12 @@ class _Rewriter:
                 raise FileFault(element, Message("robot_file.refused", {"element": "hfield"}))
             values |= {"contype": "0", "conaffinity": "0"}  # contacts cost time, and do not act
         if tag == "mesh" and "file" in values:
-            values |= self._mesh(element)
+            name = _mesh_name(element)
+            values |= {"name": name, "file": self._files[name]}
         self._parts.append("\n" * (element.line - self._line))
         self._line = max(self._line, element.line)
         attributes = "".join(f" {name}={quoteattr(value)}" for name, value in values.items())
-        self._parts.append(f"<{tag}{attributes}>")
+        self._parts.append(f"<{tag}{attributes}>{DUMMY if self._is_bare(element) else ''}")
         for child in self._passed(element):
             self._write(child)
         self._parts.append(f"</{tag}>")
@@ -164,26 +180,47 @@ class _Rewriter:
             if child.tag not in passed:
                 if child.tag not in left_out:
                     raise FileFault(child, Message("robot_file.unknown", {"parent": element.tag}))
+            elif self._is_lacking(child):
+                continue
             elif element.tag != "actuator" or {"joint", "jointinparent"} & child.values.keys():
                 yield child
 
-    def _mesh(self, element: Element) -> dict[str, str]:
-        """Name and file of a mesh as MuJoCo sees them; its content is kept."""
+    def _is_lacking(self, element: Element) -> bool:
+        """Whether an element is a mesh that is not there, or the geom of one."""
+        if element.tag == "mesh" and "file" in element.values:
+            return not self._files[_mesh_name(element)]
+        return element.tag == "geom" and not self._files.get(element.values.get("mesh", ""), "any")
+
+    def _is_bare(self, element: Element) -> bool:
+        """Whether an element is a body that has lost all of which MuJoCo could take its mass."""
+        if element.tag != "body":
+            return False
+        own, waiting = list[Element](), [*element.children]
+        while waiting:
+            each = waiting.pop()
+            own.append(each)
+            waiting += each.children if each.tag == "frame" else []
+        weighed = [each for each in own if each.tag in ("inertial", "geom")]
+        return bool(weighed) and all(map(self._is_lacking, weighed))
+
+    def _file(self, element: Element) -> str:
+        """The file of a mesh as MuJoCo sees it, whose content is kept; "" if it is not there."""
         address = element.values["file"]
         found = self._folders.mesh(self._address(address))
-        if found is None:
-            raise FileFault(element, Message("robot_file.mesh", {"mesh": shown(address)}))
-        file = f"{len(self._meshes)}{found.suffix.lower()}"
         try:
-            self._meshes[file] = found.read_bytes()
+            content = found.read_bytes() if found is not None else None
         except OSError:
-            raise FileFault(element, Message("robot_file.mesh", {"mesh": shown(address)})) from None
+            content = None
+        if found is None or content is None:
+            self._lacking.append(PurePosixPath(address.replace("\\", "/")).name)
+            return ""
+        file = f"{len(self._meshes)}{found.suffix.lower()}"
+        self._meshes[file] = content
         self._size += len(self._meshes[file])
         if self._size > MOST_MESH_BYTES:
             most = f"{MOST_MESH_BYTES // 10**6} MB"
             raise FileFault(element, Message("robot_file.meshes", {"most": most}))
-        name = element.values.get("name", PurePosixPath(address.replace("\\", "/")).stem)
-        return {"name": name, "file": file}
+        return file
 
     def _address(self, address: str) -> str:
         """The file of a mesh, from the robot's folder."""

@@ -29,6 +29,7 @@ from onpath.models.robot_files.file_chain import (
     exact,
     guessed_tip,
     locked_guesses,
+    some_names,
     tip_at,
     turn,
 )
@@ -69,6 +70,8 @@ def read_mjcf(file: Path, root: Element, options: Options) -> FileChain:
     model, warnings = read_model(checked.text, checked.meshes, file.name)
     read = _Model(model, root, options).read()
     told = [Message("robot_file.mujoco_warns", {"reason": each}) for each in warnings]
+    if checked.lacking:
+        told.append(Message("robot_file.not_drawn", some_names([*dict.fromkeys(checked.lacking)])))
     looks = hashlib.sha256(b"".join(checked.meshes.values())).hexdigest()[:16]
     rests = read.rests + (looks if checked.meshes else "")
     return replace(read, remarks=(*read.remarks, *told), rests=rests)

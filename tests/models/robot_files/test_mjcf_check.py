@@ -55,9 +55,7 @@ def test_what_reads_files_runs_code_or_multiplies_is_refused_by_its_line(
 
 @pytest.mark.parametrize("place", ["../a.obj", "/etc/passwd", "linked.obj", "other.txt", "no.obj"])
 @pytest.mark.parametrize("folder", ["meshes", "", "../outside", "/tmp"])
-def test_a_mesh_from_elsewhere_is_refused_by_its_line(
-    tmp_path: Path, place: str, folder: str
-) -> None:
+def test_a_mesh_from_elsewhere_is_left_out(tmp_path: Path, place: str, folder: str) -> None:
     robot = tmp_path / "robot"
     for each in (robot, tmp_path / "outside"):
         each.mkdir()
@@ -69,9 +67,10 @@ def test_a_mesh_from_elsewhere_is_refused_by_its_line(
     if (folder, place) == ("meshes", "../a.obj"):
         place = "../../outside/a.obj"
     text = ARM.replace('meshdir="meshes"', f'meshdir="{folder}"')
-    said = refusal(robot, text.replace(MESH, f'<mesh file="{place}"/>'))
-    line = ARM[: ARM.index(MESH)].count("\n") + 1
-    assert said.startswith(f"arm.xml, line {line}, mesh: the mesh {place} is not")
+    file = written(robot, text.replace(MESH, f'<mesh name="tetrahedron" file="{place}"/>'))
+    model = checked_model(file, root_of(file.read_bytes()), {})
+    assert model.meshes == {} and model.lacking == [Path(place).name]
+    assert 'mesh="tetrahedron"' in ARM and "tetrahedron" not in model.text
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -112,6 +113,16 @@ def test_the_mass_of_a_dummy_is_that_of_what_is_drawn(tmp_path: Path) -> None:
     length, radius = float(np.hypot(0.03, 0.16)), 0.03
     volume = np.pi * radius**2 * (length + 4 / 3 * radius)
     assert 0.9 * volume < bodies_of(robot)[1].mass / 1000 < volume  # a polyhedron in the capsule
+
+
+def test_bodies_of_meshes_that_are_not_there_are_weighed_as_capsules(tmp_path: Path) -> None:
+    """As in a URDF file; what MuJoCo gets for them is no mass."""
+    drawn = re.sub('<geom type="capsule"[^>]*>', '<geom type="mesh" mesh="m"/>', arm(["", ""]))
+    assets = '<asset><mesh name="m" file="no.stl"/></asset><worldbody>'
+    robot = read(tmp_path, drawn.replace("<worldbody>", assets))
+    assert min(body.mass for body in bodies_of(robot)) > 0.01
+    assert [guess.kind for guess in robot.guesses if guess.kind == "mass"] == ["mass"]
+    assert ["no.stl" in str(remark) for remark in robot.remarks] == [True]
 
 
 KEYS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
