@@ -20,12 +20,13 @@ from onpath.models.errors import CodedError, Message
 LONGEST = 80  # [characters]
 NUMPY = {name: getattr(np, name) for name, (count, _) in FUNCTIONS.items() if count == 1}
 """Name -> function of one argument."""
-GREEK = {
+LETTERS = {
     "alpha": "α",
     "beta": "β",
     "delta": "δ",
     "epsilon": "ε",
     "eta": "η",
+    "l": "ℓ",
     "lambda": "λ",
     "omega": "ω",
     "phi": "φ",
@@ -59,14 +60,14 @@ def spellings(names: Iterable[str]) -> dict[str, str]:
     """How names, functions and π may be typed -> what is meant; the longest come first.
 
     Args:
-        names: letters, or the English name of a Greek letter, and digits: `K1`, `theta`.
+        names: letters, or the name of one in `LETTERS`, and digits: `K1`, `theta`.
     """
     found = dict[str, str]()
     for name in (*names, *NUMPY, "pi"):
         match = NAME.fullmatch(name)
         assert match is not None, name
         letters, digits = match[1], match[2]
-        starts = (letters, GREEK[letters]) if letters in GREEK else (letters,)
+        starts = (letters, LETTERS[letters]) if letters in LETTERS else (letters,)
         ends = (digits, f"_{digits}", digits.translate(SUBSCRIPTS)) if digits else ("",)
         found |= {start + end: name for start in starts for end in ends}
     return {text: found[text] for text in sorted(found, key=len, reverse=True)}

@@ -76,6 +76,9 @@ def test_wrong_model_costs_some_millimetres() -> None:
     wrong: dict[str, Any] = {"error_M11": -40, "error_M22": -40, **PD}
     stiff = play(9.0, [], K1=800, **wrong)["follower"].distance[7000:].mean()
     assert_stated(said("06", "| too light, twice K1 | # mm | # mm |")[1:], [float(stiff)])
+    half: dict[str, Any] = {"error_M11": -20, "error_M22": -20, **PD}
+    derived = play(9.0, [], **half)["follower"].distance[7000:].mean()
+    assert_stated(said("06", "$\\omega = 2\\pi$: # mm outside."), [float(derived)])
 
 
 def test_more_gain_until_it_is_fatal() -> None:

@@ -99,7 +99,8 @@ def test_the_hand_lets_go_at_585_mm_s_just_past_the_circle() -> None:
     assert stated == said(LESSON, "you expected the controller to stop # mm/s in no time.")[0]
     texts = said(
         LESSON,
-        "for # mm/s it is # mm. You have seen #, because the hand let go # mm after the circle.",
+        "For your # mm/s it is # mm. You have seen #, because the hand let go # mm after the "
+        "circle.",
     )
     peak, past = largest(snatched(FOLLOWER).distance, 1.06, 2), float(50 - 1e3 * np.linalg.norm(y))
     assert_stated(texts, [value(stated), value(stated) / (20 * float(np.e)), peak, past])

@@ -69,7 +69,7 @@ def test_the_numbers_of_one_mode() -> None:
     assert_stated(said(LESSON, "and $c = #$ follows from"), [turned])
     assert_stated(said(LESSON, "a base that is *shifted* would give #)"), [shifted])
     assert_stated(said(LESSON, "$(1-c)\\,a = #\\,a$"), [1 - turned])
-    assert_stated(said(LESSON, "At $\\alpha = 1/c = #$ the sign changes"), [1 / turned])
+    assert_stated(said(LESSON, "$1 - \\alpha c = 0$: $\\alpha = 1/c = #$."), [1 / turned])
     texts = said(LESSON, "their sum tends to 1: it is #, #, #, # with one to four modes.")
     assert_stated(texts, np.cumsum(coefficients(4)).tolist())
     assert abs(coefficients(6).sum() - 1) < abs(coefficients(4).sum() - 1)

@@ -233,18 +233,18 @@ def test_torque_at_the_edge() -> None:
     follower = shown("03", "Pushed towards the edge")["follower"]
     peaks = [float(follower.torque[follower.during(a + 1, a + 3)].max()) for a in range(0, 15, 3)]
     assert_stated(said("03", "from one second after each move on: **#, #, #, #, # N m**"), peaks)
-    reach = [333, 363, 383, 393, 397]
-    for rho, peak in zip(reach, peaks, strict=True):
+    for rho, peak in zip([333, 363, 383, 393], peaks, strict=False):
         assert_stated(said("03", f"| {rho} mm | # | # | # |")[2:], [peak])
+    assert_stated(said("03", "| 397 mm | | | # |"), peaks[4:])  # the rest is derived
     for after in range(3, 16, 3):  # "Three seconds after each move"
         assert follower.at(after - 0.01) < 0.001
 
 
 def test_cosine_of_half_the_elbow() -> None:
-    text = "At # mm, # % of the full reach, the cosine is #. At # mm it is #, at # mm #, and"
+    text = "At # mm, # % of the full reach, it is #, and at # mm it is #."
     far, share, *rest = said("03", text)
     assert_stated([share], [value(far) / 4])
-    for rho, cosine in ((far, rest[0]), (rest[1], rest[2]), (rest[3], rest[4])):
+    for rho, cosine in ((far, rest[0]), (rest[1], rest[2])):
         assert_stated([cosine], [float(np.sqrt(1 - (value(rho) / 400) ** 2))])
 
 

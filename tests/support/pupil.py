@@ -224,7 +224,7 @@ class Pupil:
         values, rows = points_of(block), 0
         for i, line in enumerate(block.line):
             values[line.name] = value_of(line.formula, values)
-            right = f"{values[line.name][0]:.9f}" if line.tolerance else _expanded(block, i)
+            right = f"{values[line.name][0]:.9f}" if line.tolerance else expanded(block, i)
             for row in (right,) if self._right else ("77777", right):
                 box.locator(f'[data-line="{i}"] input').fill(row)
                 box.locator(f'[data-line="{i}"] button').click()
@@ -246,9 +246,9 @@ class Pupil:
             pytest.fail(f"{task.id}: {verdicts(self.tab, task)} {self.tab.lab.message}")
 
 
-def _expanded(block: Derivation, index: int) -> str:
-    """The formula of a line in the derivation's names alone."""
-    text = block.line[index].formula
+def expanded(block: Derivation, index: int, formula: str = "") -> str:
+    """The formula of a line, or another one in its place, in the derivation's names alone."""
+    text = formula or block.line[index].formula
     for earlier in reversed(block.line[:index]):
         if earlier.name:
             text = re.sub(rf"\b{earlier.name}\b", f"({earlier.formula})", text)

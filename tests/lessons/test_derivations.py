@@ -1,0 +1,245 @@
+"""The course's derivations: each line is what CasADi finds, and none can be read off its page."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from itertools import product
+from math import sqrt
+
+import casadi as ca
+import numpy as np
+import pytest
+
+from onpath.lessons.derivation.judged import MOST_LINES, judged, points_of, value_of
+from onpath.lessons.derivation.typed import LONGEST
+from onpath.lessons.progress import MOST_TEXT
+from onpath.lessons.schema import Derivation, Lesson, Text
+from onpath.models.arrays import Array
+from tests.support.built_in import built_in_course
+from tests.support.pupil import expanded
+
+COURSE, _ = built_in_course()
+NUMBER = re.compile(r"\d+(?:[.,]\d+)?")
+READS = 0.1  # most lines that somebody may pass who only computes with the page's numbers
+
+
+def asked(language: str) -> Iterator[tuple[Lesson, int, int, Derivation]]:
+    """All derivations of the course: lesson, step, block and derivation."""
+    for name in COURSE.lessons:
+        lesson = COURSE.lesson(name, language)
+        for index, step in enumerate(lesson.steps):
+            for place, block in enumerate(step.blocks):
+                if isinstance(block, Derivation):
+                    yield lesson, index, place, block
+
+
+@pytest.mark.parametrize("language", ["en", "de"])
+def test_whoever_types_what_is_right_is_right(language: str) -> None:
+    found = list(asked(language))
+    assert len(found) >= 9
+    for _, _, _, block in found:
+        typed = [expanded(block, i) for i in range(len(block.line))]
+        assert all(len(row) <= LONGEST for row in typed)
+        states = judged(block, "\n".join(typed))
+        assert all(state.good and state.closed for state in states)
+    assert 2 * MOST_LINES * (LONGEST + 1) <= MOST_TEXT
+
+
+@pytest.mark.parametrize("language", ["en", "de"])
+def test_each_known_mistake_is_answered_by_its_name(language: str) -> None:
+    """Also after a first line that is right; no mistake is taken for another one, or for right."""
+    for lesson, _, _, block in asked(language):
+        typed = [expanded(block, i) for i in range(len(block.line))]
+        for i, line in enumerate(block.line):
+            for number, wrong in enumerate(line.wrong):
+                row = expanded(block, i, wrong.formula)
+                state = judged(block, "\n".join([*typed[:i], row]))[i]
+                assert [each.known for each in state.tries] == [number], (lesson.name, row)
+
+
+def test_hardly_a_line_can_be_read_off_its_page() -> None:
+    """By the numbers on the page, their sums, products, quotients and roots."""
+    numbers = passed = 0
+    for language in ("en", "de"):
+        for lesson, index, _, block in asked(language):
+            seen = numbers_on(lesson, index)
+            guesses = {*seen, *map(sqrt, seen)} | {
+                value
+                for a, b in product(seen, repeat=2)
+                for value in (a + b, a - b, a * b, a / b if b else 0.0)
+            }
+            values = points_of(block)
+            for line in block.line:
+                right = value_of(line.formula, values)
+                values |= {line.name: right} if line.name else {}
+                numbers += 1
+                passed += line.tolerance > 0 and any(
+                    abs(guess - right[0]) <= line.tolerance for guess in guesses
+                )
+    assert passed <= READS * numbers, (passed, numbers)
+
+
+def numbers_on(lesson: Lesson, index: int) -> set[float]:
+    """The numbers in a step's texts, folds included, and in what its derivations ask."""
+    texts = [lesson.steps[index].title]
+    for block in lesson.steps[index].blocks:
+        if isinstance(block, Text):
+            texts.append(block.html.striptags())
+        elif isinstance(block, Derivation):
+            texts += [block.question, *(line.question for line in block.line)]
+    found = NUMBER.findall(" ".join(re.sub(r"<[^>]*>", " ", text) for text in texts))
+    return {float(each.replace(",", ".")) for each in found}
+
+
+Symbols = dict[str, ca.SX]
+
+
+def turned(angle: ca.SX) -> ca.SX:
+    return ca.vertcat(ca.cos(angle), ca.sin(angle))
+
+
+def chord(of: Symbols) -> list[ca.SX]:
+    apart = of["r"] * (turned(of["phi"]) - ca.DM([1, 0]))
+    return [ca.norm_2(apart)]
+
+
+def tip(of: Symbols) -> list[ca.SX]:
+    """The derivatives of half the squared distance, for the tip and for the flat side."""
+    a, b, depth, theta = of["a"], of["b"], of["lambda"], ca.SX.sym("theta")
+    curve = ca.vertcat(a * ca.cos(theta), b * ca.sin(theta))
+    first, second = ca.jacobian(curve, theta), ca.jacobian(ca.jacobian(curve, theta), theta)
+
+    def bend(place: ca.SX, at: float) -> ca.SX:
+        half = ca.sumsqr(place - curve) / 2
+        return ca.substitute(ca.hessian(half, theta)[0], theta, at)
+
+    def border(place: ca.SX, at: float) -> ca.SX:
+        found = bend(place, at)  # is linear in the depth
+        slope = ca.jacobian(found, depth)
+        return depth - found / slope
+
+    place, side = ca.vertcat(a - depth, 0), ca.vertcat(0, b - depth)
+    squares = ca.sumsqr(first), ca.dot(place - curve, second)
+    at_tip = [ca.substitute(each, theta, 0) for each in squares]
+    return [*at_tip, bend(place, 0), border(place, 0), ca.SX(45**2 / 60), border(side, np.pi / 2)]
+
+
+def edge(of: Symbols) -> list[ca.SX]:
+    return [ca.cos(ca.asin(of["rho"] / (2 * of["l"])))]
+
+
+def mixed(of: Symbols) -> list[ca.SX]:
+    """The mixed derivative of the kinetic energy."""
+    rates, q = ca.SX.sym("rates", 2), ca.vertcat(0.3, 0.3 + of["delta"])
+    angles = ca.SX.sym("q", 2)
+    one, two = turned(angles[0]), turned(angles[1])
+
+    def term(mass: ca.SX, place: ca.SX) -> ca.SX:
+        energy = mass / 2 * ca.sumsqr(ca.jacobian(place, angles) @ rates)
+        return ca.substitute(ca.hessian(energy, rates)[0][0, 1], angles, q)
+
+    third = term(of["m3"], of["l2"] * two + of["c3"] * one)
+    fourth = term(of["m4"], of["l1"] * one - of["c4"] * two)
+    return [third, fourth, ca.SX(np.pi / 2), of["c4"] * third / -fourth]
+
+
+def sixteen(of: Symbols) -> list[ca.SX]:
+    """The derivatives of the end-point by the chain rule."""
+    theta, x, rates, second = (
+        ca.SX.sym("theta"),
+        ca.SX.sym("x"),
+        ca.SX.sym("rates", 2),
+        ca.SX.sym("second", 2),
+    )
+    place = (of["r"] - x) * turned(theta)
+    state = ca.vertcat(theta, x)
+    velocity = ca.jacobian(place, state) @ rates
+    acceleration = ca.jacobian(velocity, state) @ rates + ca.jacobian(velocity, rates) @ second
+    along = ca.vertcat(-ca.sin(theta), ca.cos(theta))
+    across = -turned(theta)
+    here = ca.vertcat(theta, x, rates, second)
+    wanted = ca.vertcat(ca.dot(along, acceleration), ca.dot(across, acceleration))
+
+    def at(value: ca.SX, angle: ca.SX, inwards: ca.SX) -> ca.SX:
+        now = ca.vertcat(0.7, of["x"], of["w"], of["s"], angle, inwards)
+        return ca.substitute(value, here, now)
+
+    slope, rest = ca.jacobian(wanted, second), at(wanted, ca.SX(0), ca.SX(0))
+    given = ca.vertcat(of["A"], of["B"])
+    solved = ca.solve(at(slope, ca.SX(0), ca.SX(0)), given - rest)
+    return [at(ca.dot(along, velocity), ca.SX(0), ca.SX(0)), rest[0], rest[1], solved[0], solved[1]]
+
+
+def rank(of: Symbols) -> list[ca.SX]:
+    """The determinants of the path's and the arm's factor, and of D with both functions."""
+    y, q = ca.SX.sym("y", 2), ca.SX.sym("q", 2)
+    outputs = ca.vertcat(ca.atan2(y[1], y[0]), -ca.norm_2(y))
+    squared = ca.vertcat(ca.atan2(y[1], y[0]), ca.sumsqr(y))
+    here = of["R"] * ca.DM([0.6, 0.8])
+    path = ca.substitute(ca.det(ca.jacobian(outputs, y)), y, here)
+    other = ca.substitute(ca.det(ca.jacobian(squared, y)), y, here)
+    place = of["l"] * (turned(q[0]) - turned(q[1]))
+    mass = ca.diag(ca.vertcat(of["M11"], of["M22"]))
+    arm = ca.det(ca.jacobian(place, q) @ ca.inv(mass))
+    arm = ca.substitute(arm, q, ca.vertcat(of["q1"], of["q2"]))
+    return [path, arm, path * arm, ca.SX(np.pi), other / path]
+
+
+def peak(of: Symbols) -> list[ca.SX]:
+    """The zero of the rate, which is the exponential times something linear in time."""
+    time, root = ca.SX.sym("t"), ca.sqrt(of["K1"])
+    way = of["v0"] * time * ca.exp(-root * time)
+    straight = ca.jacobian(way, time) * ca.exp(root * time)
+    slope = ca.substitute(ca.jacobian(straight, time), time, 0)
+    furthest = -ca.substitute(straight, time, 0) / slope
+    return [furthest, ca.substitute(way, time, furthest)]
+
+
+def offset(of: Symbols) -> list[ca.SX]:
+    """The balance is linear in the offset."""
+    delta, needed = ca.SX.sym("delta"), of["omega"] ** 2
+    need = (of["r"] + delta) * needed
+    left = need - (1 + of["epsilon"]) * (need + of["K1"] * delta)
+    return [-ca.substitute(left, delta, 0) / ca.jacobian(left, delta)]
+
+
+def inside(of: Symbols) -> list[ca.SX]:
+    """The demand is linear in the mark's acceleration."""
+    mark = ca.SX.sym("a")
+    bending = -of["c"] * mark - of["omega"] ** 2 * of["w"]
+    left = mark + of["alpha"] * bending
+    found = -ca.substitute(left, mark, 0) / ca.jacobian(left, mark)
+    return [found, -ca.substitute(bending, mark, found) / of["w"]]
+
+
+ORACLES: list[tuple[str, int, Callable[[Symbols], list[ca.SX]]]] = [
+    ("02-what-is-the-error", 0, chord),
+    ("02-what-is-the-error", 1, tip),
+    ("03-the-five-bar", 0, edge),
+    ("03-the-five-bar", 1, mixed),
+    ("04-across-and-along", 0, sixteen),
+    ("04-across-and-along", 1, rank),
+    ("05-invariance", 0, peak),
+    ("06-exact-cancellation", 0, offset),
+    ("07-flexible-link", 0, inside),
+]
+
+
+@pytest.mark.parametrize(("name", "number", "oracle"), ORACLES)
+def test_casadi_finds_the_same(
+    name: str, number: int, oracle: Callable[[Symbols], list[ca.SX]]
+) -> None:
+    blocks = [block for lesson, _, _, block in asked("en") if lesson.name == name]
+    block = blocks[number]
+    symbols = {each: ca.SX.sym(each) for each in block.names}
+    function = ca.Function("oracle", list(symbols.values()), oracle(symbols))
+    values = points_of(block)
+    found = function.call([ca.DM(each).T for each in values.values()])
+    known: dict[str, Array] = dict(values)
+    for line, wanted in zip(block.line, found, strict=False):
+        right = value_of(line.formula, known)
+        known |= {line.name: right} if line.name else {}
+        tolerance = line.tolerance or 1e-9
+        np.testing.assert_allclose(right, np.array(wanted).ravel(), rtol=1e-9, atol=tolerance)
+    assert len(blocks) == sum(each == name for each, _, _ in ORACLES)
