@@ -1,7 +1,7 @@
 # make run   creates the environment, installs, starts the lab and prints its address
 # make test  the tests, headless Chromium included; adds what they need to the environment
 # make thorough  tests that need minutes: the numbers that lessons state, whole servers and crowds,
-#            processes that hang, a minute of attacks (.ci/run runs these, too)
+#            processes that hang, a minute of attacks (.ci/run runs half of them, others every day)
 # make pages the other tests in Chromium, of every page and dialog: an hour
 # make fuzz  the property tests with random inputs; make test has the same ones every time
 # make check lint, format, types, also of the pages' scripts      make bench  the speed tables

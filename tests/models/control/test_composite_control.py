@@ -97,6 +97,7 @@ def following(q: ca.SX, v: ca.SX, output: VirtualOutput, speed: ca.SX) -> ca.SX:
         y_rate=none,
         output=output,
         closest=ellipse,
+        drawing=False,
         reference=None,
         task=task,
         clock=clock,
