@@ -1245,7 +1245,7 @@ parameter-counterweights_removed-label = Gegengewichte ab
 parameter-counterweights_removed-help = abgenommene Gegengewichte; der Regler weiß nichts davon
 
 parameter-b-label = b
-parameter-b-help = Steigung der Ebene y1 = b y2 + d der Bahn, Gl. (23)
+parameter-b-help = Steigung der Ebene y1 = b y2 + d der Bahn, Gl. (23); ein Kreis in y2 und y3 ist darin eine Ellipse
 parameter-d-label = d
 parameter-d-help = Abstand dieser Ebene von der Hüfte, bei y2 = 0
 parameter-centre-label = Mitte y3
@@ -1303,12 +1303,12 @@ parameter-tip_yielding-label = Nachgeben
 parameter-tip_yielding-help = wie stark das Fortschreiten längs der Bahn nachgibt, wenn die Spitze festgehalten wird
 
 parameter-plant-label = Regelstrecke
-parameter-plant-help = die Lagrange-Gleichungen, oder (20)-(21) mit ∫φ² = 1 gelesen: Die Einheiten passen nicht, und es gibt keine Gelenkreibung
+parameter-plant-help = die Lagrange-Gleichungen, oder (20)-(21) mit ∫φ² = 1 gelesen: Die Einheiten passen nicht, und es gibt keine Gelenkreibung; der Lauf beginnt neu
 parameter-plant-option-lagrangian = nach Lagrange
 parameter-plant-option-unit_modes = Moden mit ∫φ² = 1
 
 parameter-modes-label = Moden
-parameter-modes-help = wie viele Moden des Balkens simuliert werden
+parameter-modes-help = wie viele Moden des Balkens simuliert werden; der Lauf beginnt neu
 
 parameter-rho-label = ρ
 parameter-rho-help = Masse des Balkens je Meter

@@ -107,7 +107,8 @@ class FlexibleParameters(Parameters):
         PLANE.b,
         "",
         (-0.5, 0.5, 0.05),
-        "slope of the plane y1 = b y2 + d of the path, eq. (23)",
+        "slope of the plane y1 = b y2 + d of the path, eq. (23); a circle in y2 and y3 is an"
+        " ellipse in it",
         group="path",
         label="b",
         symbol="b",
@@ -135,7 +136,8 @@ class FlexibleParameters(Parameters):
     plant: str = choice(
         "lagrangian",
         PLANTS,
-        "Lagrange's equations, or (20)-(21) read with ∫φ² = 1: odd units, no joint friction",
+        "Lagrange's equations, or (20)-(21) read with ∫φ² = 1: odd units, no joint friction; the"
+        " run begins anew",
         group="robot",
         label="Plant",
         compiles=True,
@@ -143,7 +145,7 @@ class FlexibleParameters(Parameters):
     modes: int = choice(
         3,
         tuple(range(1, MOST_MODES + 1)),
-        "how many modes of the beam are simulated",
+        "how many modes of the beam are simulated; the run begins anew",
         group="robot",
         label="Modes",
         compiles=True,
