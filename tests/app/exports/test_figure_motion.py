@@ -199,7 +199,7 @@ BENT = [
 TORN = [("advance", 700), ("hold", True), ("advance", 500), ("hold", False), ("advance", 900)]
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=2, deadline=None)
 @given(acts())
 @example([("choose", 1), *QUICK, *TORN, ("change", [1, 2]), *TORN])
 @example([("choose", 0), *QUICK, ("advance", 500), *BENT, ("choose", 2), *BENT, ("reset", None)])
@@ -227,7 +227,7 @@ def test_a_drawing_is_followed_as_in_python(drawn: Path, script: list[Act]) -> N
     opened.page.close()
 
 
-@settings(max_examples=4, deadline=None)
+@settings(max_examples=2, deadline=None)
 @given(st.sampled_from(list(ROBOTS)), st.sampled_from(list(REGISTERED)))
 @example("spatial_arm", "time_optimal_following")
 def test_every_law_follows_a_drawing_on_every_robot_that_it_suits(
@@ -250,7 +250,7 @@ def test_every_law_follows_a_drawing_on_every_robot_that_it_suits(
     opened.page.close()
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=4, deadline=None)
 @given(st.integers(0, 2**32), st.integers(0, len(DRAWINGS) - 1))
 def test_a_drawing_that_is_bent_crosses_itself_where_the_lab_says_so(
     drawn: Path, seed: int, number: int

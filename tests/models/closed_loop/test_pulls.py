@@ -62,7 +62,7 @@ def test_nothing_stops_the_follower(
 
 
 @pytest.mark.thorough
-@settings(max_examples=8)
+@settings(max_examples=4)
 @given(
     robot=st.sampled_from(PULLED),
     rate=st.sampled_from(RATES),
