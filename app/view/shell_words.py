@@ -32,6 +32,7 @@ SHELL = (
     *("laws.about", "laws.own_heading", "laws.name", "laws.meaning", "laws.unit"),
     *("lesson.choose", "lesson.done", "lesson.begun", "route.routes", "route.follow"),
     "robots.choose",
+    "robots.illustrative",
     *("keep.title", "keep.yours", "keep.other", "keep.other_hint", "keep.go", "keep.share"),
     *("keep.shared", "keep.paste", "keep.paste_hint", "keep.use", "keep.report"),
     *("keep.with_code", "keep.with_code_means", "keep.sharing", "keep.coming_back", "keep.record"),

@@ -607,6 +607,7 @@ scene-true_scale = maßstäblich
 scene-larger = Durchbiegung { $factor }× gezeichnet
 
 robots-choose = Wähle einen Roboter
+robots-illustrative = Die Zahlen der mitgelieferten Roboter sind Beispiele und gehören zu keinem bestimmten Gerät.
 
 laws-left = Regelgesetz links
 laws-right = Regelgesetz rechts

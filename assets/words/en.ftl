@@ -522,6 +522,7 @@ scene-true_scale = true scale
 scene-larger = deflection drawn { $factor }×
 
 robots-choose = Choose a robot
+robots-illustrative = The numbers of the robots that come with OnPath are illustrative, not those of particular machines.
 
 laws-left = Law, left
 laws-right = Law, right

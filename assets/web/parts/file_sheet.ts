@@ -108,9 +108,9 @@ export function pathFromFile(texts: Texts, files: Files, chosen: ChosenFile, dro
         const { left, top, width, height } = picture.getBoundingClientRect()
         const scale = (SIZE + 2 * MARGIN) / Math.min(width, height)
         const at = [(clientX - left - width / 2) * scale + SIZE / 2, SIZE / 2 - (clientY - top - height / 2) * scale] as const
-        const pressed = nearest(chosen.lines, at) + 1, others = chosen.use.parts.filter(each => each !== pressed)
+        const line = nearest(chosen.lines, at) + 1, others = chosen.use.parts.filter(each => each !== line)
         const isTaken = others.length < chosen.use.parts.length
-        parts.value = (isTaken ? others : [...others, pressed].sort((a, b) => a - b)).join(", ")
+        parts.value = (isTaken ? others : [...others, line].sort((a, b) => a - b)).join(", ")
         void follow()
     })
     const take = (file: File | undefined) => {

@@ -35,7 +35,7 @@ export function chooseRobot(texts: Texts, { robots }: RobotSheet, present: strin
         for (const card of cards) card.tabIndex = card === next ? 0 : -1
         next.focus()
     })
-    sheet.body.append(grid)
+    sheet.body.append(grid, made("p", "note", phrase(texts, "robots.illustrative")))
     sheet.open(cards.find(card => card.tabIndex === 0) ?? cards[0])
     return sheet
 }
