@@ -169,12 +169,12 @@ def seen(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator
     file = onpath.figure(law=laws, choices=["set_point"]).save(folder / "figure.html")
     figure = SiteReader(browser, file.as_uri())
     wait_for(lambda: figure.page.evaluate("'onpath' in window"), WAIT)
-    for each in _before_and_while_held(figure):
+    for each in _running_and_paused(figure):
         found[FIGURE].look(each)
     site = exported_site(folder, ("en",))
     start = SiteReader(browser, f"{site.as_uri()}/index.html")
     wait_for(lambda: start.page.evaluate("Boolean(window.site?.figure)"), WAIT)
-    for each in _before_and_while_held(start):
+    for each in _running_and_paused(start):
         found[FREE].look(each, "section[aria-labelledby=lab]")
     found[LESSONS].look(start, "main > section:not([aria-labelledby=lab])")
     lesson = SiteReader(browser, f"{site.as_uri()}/{LESSON}.html", reduced_motion="reduce")
@@ -183,6 +183,13 @@ def seen(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator
     yield found
     for reader in (figure, start, lesson):
         reader.context.close()
+
+
+def _running_and_paused(reader: SiteReader) -> Iterator[SiteReader]:
+    """A page with a figure, also while its time stands still: then one can go on by a step."""
+    yield from _before_and_while_held(reader)
+    reader.page.get_by_role("button", name=ENGLISH("run.pause"), exact=True).first.click()
+    yield reader
 
 
 def _before_and_while_held(reader: SiteReader) -> Iterator[SiteReader]:

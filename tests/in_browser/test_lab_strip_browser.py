@@ -201,7 +201,7 @@ def test_everything_fits_into_windows_of_all_shapes(browser: Browser, server: La
             assert boxes["scene"]["height"] > (0.5 if width > height else 0.34) * height
             assert tab.page.evaluate(COVERED) == []
             assert boxes["chart"]["height"] > 70 and boxes["chart"]["bottom"] <= height
-            assert len(boxes["buttons"]) >= 6
+            assert len(boxes["buttons"]) >= 5
             for button in boxes["buttons"]:
                 assert button["left"] >= 0 and button["right"] <= width
                 assert button["height"] >= 30 and button["bottom"] <= boxes["chart"]["top"] + 1
