@@ -172,7 +172,7 @@ def test_buttons_keep_their_places_whatever_they_say(page: Page) -> None:
 def test_the_table_has_what_the_chart_shows(page: Page) -> None:
     page.evaluate(HELD_AND_PULLED)
     page.evaluate(THREE_FRAMES)
-    page.get_by_text(ENGLISH("chart.table")).click()
+    page.locator("summary", has_text=ENGLISH("chart.table")).click()
     table = page.get_by_role("table", name=ENGLISH("chart.title"))
     expect(table.get_by_role("columnheader")).to_contain_text(
         ["Trajectory tracking [mm]", "Path following [mm]"]
@@ -185,7 +185,7 @@ def test_the_table_has_what_the_chart_shows(page: Page) -> None:
         for line, cell in zip(lines, row[1:3], strict=True):
             expected = np.interp(float(row[0]), line["times"], line["values"])
             assert float(cell) == pytest.approx(expected, abs=0.06)
-    page.get_by_text(ENGLISH("chart.table")).click()
+    page.locator("summary", has_text=ENGLISH("chart.table")).click()
 
 
 LETTERS_IN_A_LENS = """() => {
