@@ -90,6 +90,7 @@ def test_a_robot_from_a_file_enters_beside_another(
     assert float(shown) == pytest.approx(1e3 * float(row["distance_m"]), abs=0.01)
 
 
+@pytest.mark.thorough
 def test_the_command_behind_a_number_gives_that_number(
     files: list[str], tmp_path: Path, capsys: Any
 ) -> None:

@@ -14,6 +14,7 @@ from onpath.app.cli.main import run_command
 PAIR = ["--law", "path_following", "--law", "trajectory_tracking", "--obstruction", "wall"]
 
 
+@pytest.mark.thorough
 def test_table_json_csv_and_picture_tell_the_same(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

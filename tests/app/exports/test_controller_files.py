@@ -42,6 +42,7 @@ def compiled(compiler: str, file: Path, *options: str) -> str:
     return done.stdout
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("compiler", COMPILERS)
 @pytest.mark.parametrize(
     ("robot", "given"),
@@ -167,6 +168,7 @@ EVENTS = st.one_of(
 )
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("at_fault", ["zero", "hold", "damp"])
 @settings(max_examples=15)
 @given(events=st.dictionaries(st.integers(0, 60), EVENTS, max_size=5))
@@ -235,6 +237,7 @@ def follow_both(in_c: InC, controller: Controller, names: list[str], path: int) 
     return controller.theta
 
 
+@pytest.mark.thorough
 def test_names_of_a_file_are_safe(tmp_path: Path) -> None:
     """A joint's name cannot end a comment, and a file may have any name."""
     text = urdf("planar", PLANAR).replace("joint1", "*/ int main(")
@@ -244,6 +247,7 @@ def test_names_of_a_file_are_safe(tmp_path: Path) -> None:
     assert compiled(COMPILERS[0], file).count(EQUAL) == 2
 
 
+@pytest.mark.thorough
 @pytest.mark.filterwarnings("ignore:.*The pen is raised")
 def test_the_pen_is_up_between_the_strokes_of_a_drawing(tmp_path: Path) -> None:
     """As the path says, in C and in Python, at places all along it."""

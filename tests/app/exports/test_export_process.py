@@ -37,6 +37,7 @@ def test_a_file_from_the_process_is_the_same_to_the_byte(process: ExportProcess)
     assert made == csv_bytes(simulation.robot, simulation.history.all())
 
 
+@pytest.mark.thorough
 def test_it_is_another_process_with_lower_priority(process: ExportProcess) -> None:
     pid = process.call(LONG, os.getpid)
     assert pid == process.pid != os.getpid()
@@ -55,6 +56,7 @@ def test_output_printed_in_the_process_is_not_taken_for_a_result(process: Export
     assert process.call(LONG, print, "hello") is None
 
 
+@pytest.mark.thorough
 def test_a_crash_fails_one_call(process: ExportProcess) -> None:
     with pytest.raises(ExportError, match="died"):
         process.call(LONG, die)
@@ -76,6 +78,7 @@ def test_a_killed_process_fails_one_call(process: ExportProcess, tmp_path: Path)
     assert process.call(LONG, os.getpid) != pid
 
 
+@pytest.mark.thorough
 def test_what_takes_too_long_is_given_up(process: ExportProcess, tmp_path: Path) -> None:
     process.call(LONG, abs, -1)  # it has been started
     with pytest.raises(ExportError, match="ended after"):
@@ -122,6 +125,7 @@ class Noticed(float):
         return super().__le__(other)
 
 
+@pytest.mark.thorough
 def test_stopping_ends_the_calls_that_are_under_way_or_wait(tmp_path: Path) -> None:
     process, begun, noticed = ExportProcess(), tmp_path / "begun", Noticed(LONG)
     with ThreadPoolExecutor(2) as pool:

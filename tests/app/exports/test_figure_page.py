@@ -112,6 +112,7 @@ def test_a_page_is_small_the_same_every_time_and_names_no_other_place(tmp_path: 
     assert not re.findall(r"(?:src|href|url)\s*[=(]|https?:|import\(", around)
 
 
+@pytest.mark.thorough
 @settings(max_examples=3)
 @given(st.integers(0, 2**32), st.integers(20, 200))
 def test_all_drawings_have_the_same_module(seed: int, pieces: int) -> None:

@@ -82,6 +82,7 @@ def shown(page: NodePage) -> Any:
     return page.evaluate(SHOW)
 
 
+@pytest.mark.thorough
 def test_what_acts_is_shaded_and_named_and_each_event_tells_its_own_peak(page: NodePage) -> None:
     page.evaluate(HELD_AND_PULLED)
     chart = shown(page)

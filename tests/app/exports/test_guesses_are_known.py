@@ -135,6 +135,7 @@ def test_a_page_marks_plots_fields_and_the_robot(entry: RobotEntry, language: st
             assert each.line in text and each.message.text(language)[1:] in text
 
 
+@pytest.mark.thorough
 def test_a_figure_marks_its_plots_and_says_what_is_guessed(entry: RobotEntry) -> None:
     page = onpath.figure(entry, law="path_following").html
     for each in entry.guesses:

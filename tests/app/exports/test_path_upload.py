@@ -186,6 +186,7 @@ def test_the_lab_follows_all_lines_of_a_file_and_tells_of_them() -> None:
     assert all(each.diverged is None for each in lab.simulation.runs.values())
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("placing", [Placing(fit=0.4), Placing(fit=0.1, centre=(0.2, 0.0))])
 def test_what_cannot_be_followed_is_marked_where_and_the_old_path_kept(placing: Placing) -> None:
     lab = new_lab(0.2)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 
 import numpy as np
+import pytest
 from PIL import Image
 
 from onpath.app.exports.files import lines_file
@@ -27,6 +28,7 @@ WORD = np.stack(
 """A joined-up word of five loops, [m]."""
 
 
+@pytest.mark.thorough
 def test_a_name_is_written_twice_and_the_pen_returns_unseen() -> None:
     lab = new_lab()
     simulation = lab.simulation

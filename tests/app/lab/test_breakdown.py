@@ -28,6 +28,7 @@ def blown_up() -> Lab:
     return lab
 
 
+@pytest.mark.thorough
 def test_the_last_moments_are_shown_slowly_and_larger(blown_up: Lab) -> None:
     lab, simulation = blown_up, blown_up.simulation
     fault = max(run.diverged.time for run in simulation.runs.values() if run.diverged)

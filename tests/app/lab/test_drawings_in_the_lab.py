@@ -31,6 +31,7 @@ def word(seed: int) -> FollowCurve:
     return FollowCurve(spline_through(strokes))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("seed", range(4))
 def test_after_an_upload_both_robots_draw_it_from_its_beginning_and_are_on_it_after_a_hold(
     seed: int,
@@ -80,6 +81,7 @@ def test_nothing_is_compiled_for_another_drawing_a_drag_or_a_stroke(
     assert made == []
 
 
+@pytest.mark.thorough
 def test_the_speed_along_a_drawing_is_told_as_it_is_run() -> None:
     lab, command = new_lab(0.2), word(3)
     assert values(lab)["pace"] == ""

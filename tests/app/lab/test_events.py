@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -46,6 +47,7 @@ def test_the_latest_events_are_kept() -> None:
     assert list(log) == list(expected)
 
 
+@pytest.mark.thorough
 def test_events_are_no_objects_of_their_own() -> None:
     log = EventLog()
 

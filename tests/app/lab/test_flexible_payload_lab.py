@@ -37,6 +37,7 @@ def test_both_robots_go_on_from_where_they_are() -> None:
     assert lab.message == ""
 
 
+@pytest.mark.thorough
 def test_the_tip_sags_under_the_load_and_comes_back() -> None:
     lab, distances = flexible_lab(2.0), list[float]()
     for payload in (0.0, 0.02, 0.0):

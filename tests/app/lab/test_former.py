@@ -290,6 +290,7 @@ def test_a_share_code_sets_up_the_usual_laws(code: str) -> None:
         assert told == ("flexible", 0.5, False, 4.0)
 
 
+@pytest.mark.thorough
 def test_a_kept_lab_opens_in_its_lesson(records: Records) -> None:
     kept = records.load("c0de01")
     assert kept is not None

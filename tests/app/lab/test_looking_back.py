@@ -74,6 +74,7 @@ COMMANDS: dict[str, c.Command] = {
 }
 
 
+@pytest.mark.thorough
 @settings(max_examples=40, deadline=None)
 @given(st.lists(st.sampled_from(ACTIONS), max_size=25))
 @example(["run", "back", "Run", "run"])

@@ -342,6 +342,7 @@ def some_kinds(most: int) -> list[Kind]:
     return list(islice(every, most))
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("cheap")
 def test_loops_in_use_are_shared_and_of_the_others_only_the_last_are_kept() -> None:
     loop_cache = LoopCache(at_once=True, translate=InterpretedLoop)

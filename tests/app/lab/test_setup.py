@@ -113,6 +113,7 @@ def test_data_round_trip(setup: Setup) -> None:
     assert from_data(msgspec.json.decode(msgspec.json.encode(to_data(setup)))) == setup
 
 
+@pytest.mark.thorough
 @SLOW
 @given(designs)
 def test_a_path_comes_back_where_it_was(design: PathDesign) -> None:

@@ -245,6 +245,7 @@ def bounded_after(course: Course, sequence: list[c.Command]) -> None:
     assert_bounded(lab)
 
 
+@pytest.mark.thorough
 @settings(max_examples=5, deadline=None)
 @given(st.lists(ANY, min_size=10, max_size=40))
 def test_what_is_stored_stays_below_its_bound(course: Course, sequence: list[c.Command]) -> None:

@@ -97,6 +97,7 @@ def a_state(random: np.random.Generator) -> Now:
     )
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("limit", [0.2, 0.3, 1.0])
 def test_it_uses_the_torque_that_there_is_and_no_more(limit: float) -> None:
     run = onpath.simulate(torque_limit=limit, **HELD)
@@ -104,6 +105,7 @@ def test_it_uses_the_torque_that_there_is_and_no_more(limit: float) -> None:
     assert limit - 1e-4 < np.abs(run.torque).max() <= limit + 1e-9
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("robot", ["five_bar", "two_link_arm", "spatial_arm"])
 def test_it_follows_its_path_free_held_and_released(robot: str) -> None:
     """Within 0.02, 0.5 and 0.5 mm, and at its speed in the end."""

@@ -108,6 +108,7 @@ def test_drawings_go_too(tmp_path: Any) -> None:
     assert np.array_equal(replayed(controller, log, True), log.torque)
 
 
+@pytest.mark.thorough
 @settings(max_examples=10)
 @given(
     changes=st.dictionaries(
@@ -138,6 +139,7 @@ def test_changed_settings_act_as_in_the_lab(changes: dict[str, float], at: int) 
         assert np.array_equal(torque, kernel.log.unpack(rows)["u"][0])
 
 
+@pytest.mark.thorough
 @settings(max_examples=10)
 @given(rates=st.lists(st.sampled_from([50, 100, 250, 500, 1000]), min_size=2, max_size=4))
 def test_a_changed_rate_holds_each_torque_for_its_own_interval(rates: list[int]) -> None:
@@ -263,6 +265,7 @@ def test_damping_takes_no_jump_for_a_speed() -> None:
     assert controller.code == CODE["jump"]
 
 
+@pytest.mark.thorough
 def test_infinity_and_nan_anywhere_are_refused() -> None:
     for bad in (math.nan, math.inf, -math.inf, 1e301):
         for place in range(4):

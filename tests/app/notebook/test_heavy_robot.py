@@ -63,6 +63,7 @@ def along(entry: RobotEntry, **values: float | str) -> Experiment:
     return on_path(entry, entry.parameters(), circle(0.1)).with_values({"duration": 1.0, **values})
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("law", LAWS)
 def test_an_arm_of_a_tonne_follows_its_path_with_the_torques_that_this_takes(
     heavy: RobotEntry, law: str
@@ -138,6 +139,7 @@ def test_a_comparison_says_which_law_asks_for_more_and_of_which_motor(
     assert "der Motor von joint" in row.beyond
 
 
+@pytest.mark.thorough
 def test_the_lab_says_so_once_in_a_run(heavy: RobotEntry) -> None:
     lab = Lab(loop_cache())
     do(lab, c.ChooseRobot(heavy.name), c.Set("speed", 10.0))

@@ -330,6 +330,7 @@ def test_a_lab_begins_with_the_law_and_a_fault_in_it_stops_its_own_robot() -> No
     assert stop is not None and "(test_own_laws.py, line" in str(stop.reason)
 
 
+@pytest.mark.thorough
 def test_the_command_line_takes_a_law_of_a_file(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -62,6 +62,7 @@ class Summed:
         return -now.K5 * (now.theta_rate - now.speed), across
 
 
+@pytest.mark.thorough
 @settings(max_examples=8, deadline=None)
 @given(st.data())
 def test_a_sweep_has_the_numbers_of_single_runs_in_the_order_of_its_arguments(data: Any) -> None:

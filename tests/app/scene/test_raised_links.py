@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -17,6 +18,7 @@ from tests.support.drawings import random_drawing
 from tests.support.lab import do, new_lab
 
 
+@pytest.mark.thorough
 def test_what_is_drawn_and_the_dashes_are_the_whole_path_and_keep_to_their_places() -> None:
     rng = np.random.default_rng(4)
     strokes = [rng.uniform(-0.04, 0.04, (4, 2)) for _ in range(3)]

@@ -27,6 +27,7 @@ def read(monkeypatch: pytest.MonkeyPatch) -> list[Path]:
     return files
 
 
+@pytest.mark.thorough
 def test_lessons_tests_and_routes_are_the_same() -> None:
     found = built_in_course()
     for same, own in ((COURSE.lessons, found.lessons), (COURSE.tests, found.tests)):

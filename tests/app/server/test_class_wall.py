@@ -175,6 +175,7 @@ SENT = st.sampled_from(
 )
 
 
+@pytest.mark.thorough
 @given(st.lists(SENT, min_size=3, max_size=9))
 @settings(max_examples=3, deadline=None)
 def test_nothing_that_a_wall_sends_changes_anything(

@@ -140,6 +140,7 @@ def test_a_lab_that_is_waited_for_holds_up_nobody_else(held: Held, way: str) -> 
     wait_for(lambda: SLOW not in registry.held(), WAIT)
 
 
+@pytest.mark.thorough
 def test_two_who_want_the_same_lab_at_once_get_it_once() -> None:
     held = Held("load")
     registry, found = new_registry(held), []

@@ -55,6 +55,7 @@ def test_an_empty_file_comes_too() -> None:
     assert not delivery.take()
 
 
+@pytest.mark.thorough
 def test_what_is_made_is_told_in_the_pages_language_and_one_at_a_time() -> None:
     lab, commands = new_lab(0.2), list[Any]()
     do(lab, SetLanguage("de"))
@@ -132,6 +133,7 @@ def test_the_robots_follow_the_path_in_a_file_of_the_page(script: Script) -> Non
     assert script.read_until("path", is_there)["closed"]  # after the blend
 
 
+@pytest.mark.thorough
 def test_the_same_file_is_read_again_without_coming_again(script: Script) -> None:
     content = CIRCLE.encode()
     assert len(send(script, 1, content)["lines"]) == 1
@@ -173,6 +175,7 @@ def test_a_page_that_gives_up_a_file_may_send_another(script: Script) -> None:
     assert send(script, 3, CIRCLE.encode())["state"] == "used"
 
 
+@pytest.mark.thorough
 def test_the_record_of_the_lessons_comes_as_a_file(script: Script) -> None:
     say(script, "make", file="report")
     script.read_until("download", lambda m: m["state"] == "making")

@@ -203,6 +203,7 @@ def test_short_hiccups_are_made_up_for() -> None:
     assert scheduled.simulation.time == pytest.approx(4.0, abs=0.06)
 
 
+@pytest.mark.thorough
 def test_frames_that_are_late_are_drawn_less_often_until_they_no_longer_are() -> None:
     """60 % of the time are taken: 11 late frames at the usual pace, fewer so."""
     thread, _, screens = drawn(14.0, lambda at: 0.095 if at == 300 else 0.004, drawing=0.015)

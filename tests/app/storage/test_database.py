@@ -383,6 +383,7 @@ def child(script: str, *arguments: str) -> subprocess.Popen[str]:
     return subprocess.Popen(command, cwd=ROOT, stdout=pipe, stderr=pipe, text=True)
 
 
+@pytest.mark.thorough
 @pytest.mark.skipif(os.name != "posix", reason="limits of a POSIX system")
 def test_writes_that_the_system_refuses_lose_nothing_that_was_kept(file: Path) -> None:
     process = child(LIMITED, str(file))

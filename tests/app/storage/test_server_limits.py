@@ -64,6 +64,7 @@ def refusal(act: Callable[[], object]) -> str:
     return "".join(said)
 
 
+@pytest.mark.thorough
 @needs_postgres
 def test_a_row_that_another_process_holds_is_not_waited_for_long(
     url: str, records: Records, monkeypatch: pytest.MonkeyPatch

@@ -38,6 +38,7 @@ class Guest:
         return "" if shown is None else shown.name
 
 
+@pytest.mark.thorough
 def test_a_newcomer_is_led_from_a_hold_to_a_pull_to_a_bent_path() -> None:
     course = built_in_course()
     lab, new = Lab(loop_cache(), course=course), Guest("")

@@ -98,6 +98,7 @@ def test_the_angle_at_the_elbow_is_between_base_and_end_point(entry: RobotEntry)
             assert (point - elbow) @ ray > 0
 
 
+@pytest.mark.thorough
 def test_the_joints_of_a_robot_from_a_file_are_shown(tmp_path: Path) -> None:
     file = tmp_path / "arm.urdf"
     file.write_text(random_arm(4), "utf-8")

@@ -121,6 +121,7 @@ def test_closing_a_connection_makes_room() -> None:
         assert wait_for(lambda: site.websocket() == 101)
 
 
+@pytest.mark.thorough
 def test_a_class_behind_one_address_and_a_proxy_fits() -> None:
     with serving(Limits()) as site:
         school, home = {"X_Forwarded_For": "203.0.113.7"}, {"X_Forwarded_For": "198.51.100.9"}

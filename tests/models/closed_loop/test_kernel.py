@@ -273,6 +273,7 @@ def test_torque_is_held_between_the_controller_s_ticks(rig: Rig, kind: Kind) -> 
     assert np.all(np.any(np.diff(u[:, 0], axis=0) != 0, axis=1))
 
 
+@pytest.mark.thorough
 def test_slower_control_is_worse(rig: Rig) -> None:
     start = rig.on_path(FOLLOWING, CIRCLE, 0.0, TURN)
     worst = [

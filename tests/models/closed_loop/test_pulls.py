@@ -44,7 +44,7 @@ def check(robot: str, parameters: Parameters, seed: int, pulls: int, path: str =
         assert each.late < NEAR, (number, each.trouble, each.late)
 
 
-@settings(max_examples=5)
+@settings(max_examples=3)
 @given(
     st.sampled_from(PULLED),
     st.sampled_from(RATES),

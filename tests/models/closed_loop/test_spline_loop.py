@@ -97,6 +97,7 @@ def page() -> Iterator[NodePage]:
     page.close()
 
 
+@pytest.mark.thorough
 @needs_node
 @pytest.mark.parametrize("law", LAWS)
 def test_webassembly_goes_the_same_way_but_for_the_sines_of_another_library(

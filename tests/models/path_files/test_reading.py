@@ -255,6 +255,7 @@ def test_a_path_is_placed_and_scaled_on_request() -> None:
             assert (low + high) / 2 == pytest.approx(centre)
 
 
+@pytest.mark.thorough
 @settings(max_examples=20)
 @given(st.floats(-360, 360))
 def test_a_turn_turns_the_lines_about_the_centre_of_their_box(turn: float) -> None:
@@ -295,6 +296,7 @@ def test_ends_of_an_open_path_are_kept() -> None:
         assert not curve.closed and np.abs(ends - bent[[0, 2]]).max() < 2e-3
 
 
+@pytest.mark.thorough
 def test_all_lines_are_drawn_in_their_order_or_those_that_are_wanted_in_theirs() -> None:
     two = TOOL + "G0 X0 Y0\nG2 X0 Y0 I10 J0\n"
     alone = {part: read(two, "a.nc", part=(part,)).curve for part in (1, 2)}

@@ -41,6 +41,7 @@ def gaps(design: DrawingDesign, index: int) -> tuple[float, float]:
     return float(found[0]), float(found[-1])
 
 
+@pytest.mark.thorough
 @settings(max_examples=40, deadline=None)
 @given(SEEDS)
 def test_a_handle_follows_the_hand_and_bends_only_up_to_its_neighbours(seed: int) -> None:
@@ -68,6 +69,7 @@ def test_a_handle_follows_the_hand_and_bends_only_up_to_its_neighbours(seed: int
     assert np.abs(back.curve.at(sample) - design.curve.at(sample)).max() < 3 * GRAIN
 
 
+@pytest.mark.thorough
 @settings(max_examples=30, deadline=None)
 @given(SEEDS)
 def test_more_and_fewer_handles_leave_the_drawing_as_it_is(seed: int) -> None:
@@ -101,6 +103,7 @@ def test_a_drawing_has_a_least_and_a_greatest_number_of_handles() -> None:
             design.moved(least, np.zeros(2))
 
 
+@pytest.mark.thorough
 @settings(max_examples=20, deadline=None)
 @given(SEEDS, st.booleans())
 def test_a_stroke_is_followed_as_it_was_drawn(seed: int, closed: bool) -> None:

@@ -60,6 +60,7 @@ def test_closed_splines_repeat_and_open_ones_go_on_straight(curve: SplineCurve) 
     assert not curve.at(beyond[1:], 2).any() and not curve.at(beyond[1:], 3).any()
 
 
+@pytest.mark.thorough
 @given(splines(), st.integers(0, 2**32))
 def test_closest_points_and_lengths_are_those_of_dense_points(
     curve: SplineCurve, seed: int

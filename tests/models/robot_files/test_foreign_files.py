@@ -148,6 +148,7 @@ def test_a_urdf_file_weighs_and_draws_no_mesh_from_elsewhere(
     assert str(robot.resolve() / "a.stl") in opened.files
 
 
+@pytest.mark.thorough
 def test_an_mjcf_file_includes_and_draws_nothing_from_elsewhere(
     tmp_path: Path, opened: Opened
 ) -> None:
@@ -165,6 +166,7 @@ def test_an_mjcf_file_includes_and_draws_nothing_from_elsewhere(
     assert_inside(opened, robot, robot / "arm.xml")
 
 
+@pytest.mark.thorough
 def test_a_file_that_includes_another_is_that_robot(tmp_path: Path) -> None:
     """As in MuJoCo: the scene and the file give the same chain; a change of the part renames it."""
     pytest.importorskip("mujoco")

@@ -194,6 +194,7 @@ def test_the_name_says_on_what_the_motion_rests(
     assert any("pip install" in guess.line for guess in lacking.guesses)
 
 
+@pytest.mark.thorough
 def test_another_mesh_is_another_robot_exactly_where_it_is_weighed(tmp_path: Path) -> None:
     """The same file, with another mesh of about the same size."""
     visual = '<visual><geometry><mesh filename="link.stl"/></geometry></visual></link>'

@@ -69,6 +69,7 @@ def are_equal(one: RobotFile, other: RobotFile) -> bool:
 kinds = st.lists(st.sampled_from([*STATED]), min_size=2, max_size=4)
 
 
+@pytest.mark.thorough
 @settings(max_examples=6, deadline=None)
 @given(bodies=kinds, density=st.floats(50.0, 9000.0))
 def test_a_density_acts_as_if_the_file_said_it(
@@ -79,6 +80,7 @@ def test_a_density_acts_as_if_the_file_said_it(
     assert are_equal(given_here, read(folder, arm(bodies, density=density)))
 
 
+@pytest.mark.thorough
 @settings(max_examples=6, deadline=None)
 @given(bodies=kinds, more=st.floats(0.1, 50.0))
 def test_a_mass_is_that_of_all_that_moves_and_stated_ones_stay(
@@ -152,6 +154,7 @@ moments, products = (
 )
 
 
+@pytest.mark.thorough
 @settings(max_examples=5, deadline=None)
 @given(st.one_of(moments, st.builds(list.__add__, moments, products)))
 def test_an_inertia_of_no_body_is_taken_as_in_a_urdf_file(
@@ -174,6 +177,7 @@ def test_an_inertia_of_no_body_is_taken_as_in_a_urdf_file(
     assert repaired == repaired_there
 
 
+@pytest.mark.thorough
 def test_another_mesh_is_another_robot(tmp_path: Path) -> None:
     """The same file, whose mesh is another one of the same size."""
     mesh = '<geom type="mesh" mesh="link"/>'

@@ -48,6 +48,7 @@ def log(tmp_path: Path) -> Path:
     return path
 
 
+@pytest.mark.thorough
 def test_a_log_in_other_units_and_another_locale_gives_the_arm(log: Path) -> None:
     result = onpath.identify("five_bar", log, columns=COLUMNS, units=UNITS)
     true = truth("five_bar", motion_of("five_bar")[1])
@@ -312,6 +313,7 @@ def test_hostile_arrays_are_refused(tmp_path: Path) -> None:
         onpath.identify("five_bar", tmp_path / "e.npy", columns=PLACES)
 
 
+@pytest.mark.thorough
 def test_a_second_log_judges_the_values(tmp_path: Path) -> None:
     """Of the same arm, it is explained as well as the first; of another arm, it is not."""
     shares = list[float]()

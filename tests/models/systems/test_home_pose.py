@@ -157,6 +157,7 @@ def test_a_pose_is_chosen_that_the_motors_can_hold(tmp_path: Path) -> None:
     assert (np.abs(held) <= [0.5 * each.effort for each in weak]).all()
 
 
+@pytest.mark.thorough
 def test_the_same_file_has_the_same_pose(tmp_path: Path) -> None:
     homes = [read(tmp_path, SEVEN).entry.source for _ in range(2)]
     assert homes[0] is not None and homes[1] is not None

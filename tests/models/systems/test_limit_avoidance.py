@@ -61,6 +61,7 @@ def torques(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFac
     return Torques(entry_of(tmp_path_factory.mktemp("arm"), text))
 
 
+@pytest.mark.thorough
 @given(seed=st.integers(0, 10**6), gain=st.floats(0, 10))
 def test_it_acts_in_the_null_space_only(torques: Torques, seed: int, gain: float) -> None:
     """D (u_g - u_0) = 0 to rounding, anywhere within the limits."""

@@ -211,6 +211,7 @@ def test_a_heavy_arm_is_held_as_a_light_one(tmp_path: Path) -> None:
     assert np.abs(one.fields["q"] - other.fields["q"]).max() < 1e-3
 
 
+@pytest.mark.thorough
 def test_without_a_posture_the_arm_falls_to_a_limit_while_its_tip_stays(tmp_path: Path) -> None:
     """η1 of (5): with gains no joint does; without them one does; the tip stays on its path."""
     file = written(tmp_path, urdf("seven", SEVEN))

@@ -44,6 +44,7 @@ def products(page: NodePage, points: Array, closed: bool) -> Any:
     return page.evaluate("given => products(...given)", [points.tolist(), closed, FIT])
 
 
+@pytest.mark.thorough
 @settings(max_examples=60)
 @given(st.booleans(), st.integers(2, 24), st.integers(0, 2**32))
 def test_a_curve_is_fitted_as_in_the_lab(
