@@ -18,7 +18,7 @@ from onpath.models.paths.spline_fit import spline_through
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameter_specs import Spec
 
-CALM = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow], max_examples=50)
+CALM = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow], max_examples=20)
 PRESETS = presets()
 FOLLOWABLE = sorted(PRESETS)
 
