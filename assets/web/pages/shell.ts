@@ -10,7 +10,7 @@ import { noFile, pastedFile, pathFromFile } from "../parts/file_sheet"
 import type { Form } from "../parts/form"
 import { Header } from "../parts/header"
 import { help } from "../parts/help_sheet"
-import { Keep } from "../parts/keep_sheet"
+import { Keep, takenShareCode } from "../parts/keep_sheet"
 import { Keys } from "../parts/keys"
 import { aboutLaws } from "../parts/law_sheet"
 import { chooseLesson } from "../parts/lesson_sheet"
@@ -42,6 +42,7 @@ export class Shell {
     private known = "" // language and robot of the index
     private opened: { name: Opens; dialog: SheetDialog } | null = null
     private keep: Keep | null = null
+    private brought = "" // share code of the page's address
     private compare: LawComparison | null = null
     private seat: ClassSheet | null = null
     private place = "" // the lab's in the class, as it was told last
@@ -67,6 +68,8 @@ export class Shell {
         this.follow()
         this.sit()
         if (reopen in TITLES && !this.opened) void this.open(reopen as Opens)
+        addEventListener("hashchange", () => this.fetch(), { signal })
+        this.fetch()
     }
 
     get elements(): HTMLElement[] { return [this.header.element, this.panel.element] }
@@ -92,7 +95,7 @@ export class Shell {
                 language: lab.language, large: lab.presenting, look: keptLook(), send, setLook: keepLook,
                 teach: this.isClassroom ? () => void this.open("teach") : null,
             }),
-            keep: async () => (this.keep = new Keep(texts, await engine.ask("keep"), send, () => (this.keep = null))).open(),
+            keep: async () => (this.keep = new Keep(texts, await engine.ask("keep"), send, () => (this.keep = null), this.brought)).open(),
             file: () => Promise.resolve(pathFromFile(texts, engine.files, this.chosen, this.dropped)),
             compare: async () => {
                 const data = await engine.ask("compare")
@@ -121,6 +124,12 @@ export class Shell {
         if (!file) return
         event.preventDefault()
         this.take(file)
+    }
+
+    /** A share code in the page's address waits in its field to be used. */
+    private fetch(): void {
+        this.brought = takenShareCode()
+        if (this.brought && this.engine.lab!.own) void this.open("keep")
     }
 
     private take(file: File | undefined): void {

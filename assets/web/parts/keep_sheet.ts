@@ -14,16 +14,19 @@ export class Keep {
     private readonly shared = made("div", "told")
     private readonly refusal = made("p", "refusal")
     private code = ""
+    private readonly first: HTMLElement // to be pressed when it opens
 
-    constructor(private readonly texts: Texts, { code, until }: KeepSheet, private readonly send: Send, closed: () => void) {
+    /** `given`: a share code that the page's address has brought. */
+    constructor(private readonly texts: Texts, { code, until }: KeepSheet, private readonly send: Send, closed: () => void, given = "") {
         const sheet = (this.sheet = new SheetDialog(texts, "keep", phrase(texts, "keep.title"), closed))
         this.refusal.role = "alert"
         const share = pressed("main", phrase(texts, "keep.share"), () => send({ do: "Share" }))
-        const sharing = made("section", "", made("h3", "", phrase(texts, "keep.sharing")), share, this.shared,
-            this.typed("keep.paste", "keep.paste_hint", "keep.use", text => {
-                sheet.close()
-                send({ do: "UseShared", text })
-            }))
+        const using = this.typed("keep.paste", "keep.paste_hint", "keep.use", text => {
+            sheet.close()
+            send({ do: "UseShared", text })
+        }, given)
+        const sharing = made("section", "", made("h3", "", phrase(texts, "keep.sharing")), share, this.shared, using)
+        this.first = given ? using.querySelector("button")! : share
         const files = made("section", "", made("h3", "", phrase(texts, "export.title")), made("div", "row", ...(["table", "picture", "lines", "film"] as const).map(file => this.file(file))))
         const withCode = switchInput()
         const record = made("section", "", made("h3", "", phrase(texts, "keep.record")), this.file("report", () => withCode.checked))
@@ -38,7 +41,7 @@ export class Keep {
     }
 
     open(): SheetDialog {
-        this.sheet.open(this.sheet.body.querySelector<HTMLElement>("button.main"))
+        this.sheet.open(this.first)
         return this.sheet
     }
 
@@ -46,7 +49,7 @@ export class Keep {
     show(shared: string): void {
         if (!shared || shared === this.code) return
         this.code = shared
-        this.shared.replaceChildren(made("p", "", phrase(this.texts, "keep.shared")), this.codeBox(shared))
+        this.shared.replaceChildren(made("p", "", phrase(this.texts, "keep.shared")), this.codeBox(shareAddress(shared)), this.codeBox(shared))
     }
 
     /** Say how it stands with a file, or why a code was refused. */
@@ -69,9 +72,9 @@ export class Keep {
     }
 
     /** A field for a code, and the button that uses it. */
-    private typed(label: string, hint: string, act: string, use: (text: string) => void): HTMLElement {
+    private typed(label: string, hint: string, act: string, use: (text: string) => void, value = ""): HTMLElement {
         const { texts } = this
-        const field = Object.assign(made("input", ""), { type: "text", autocomplete: "off", autocapitalize: "off", spellcheck: false, title: phrase(texts, hint) })
+        const field = Object.assign(made("input", ""), { type: "text", autocomplete: "off", autocapitalize: "off", spellcheck: false, title: phrase(texts, hint), value })
         const name = made("label", "", made("span", "", phrase(texts, label)), field)
         const form = made("form", "typed", name, Object.assign(made("button", "", phrase(texts, act)), { type: "submit" }))
         form.addEventListener("submit", event => {
@@ -82,6 +85,16 @@ export class Keep {
         })
         return form
     }
+}
+
+/** The address at which a lab opens with a share code; what is behind # reaches no server. */
+export const shareAddress = (code: string): string => `${location.origin}${location.pathname.replace(/\/[cl]\/[a-z0-9]+\/?$/i, "/")}#${code}`
+
+/** The share code in the page's address, which is removed from there; empty if there is none. */
+export function takenShareCode(): string {
+    const [code = ""] = /ONPATH\d+-[\w-]+/i.exec(location.hash) ?? []
+    if (code) history.replaceState(history.state, "", `${location.pathname}${location.search}`)
+    return code
 }
 
 /** Copy what an element shows; where that is not allowed, it is at least selected. */
