@@ -2,7 +2,7 @@
 
 Two columns, or those that a line of names calls x and y, z1 and z2, or y1 and y2; other columns may
 be there. A name may state the unit: `x_mm`, `x [mm]`, `x (mm)`, `x in mm`. The columns may also be
-separated by spaces.
+separated by spaces. The names may stand in a comment, `# x_m, y_m, width_m`.
 
 An empty row ends a line, unless each row has one after it, and so does another number in a column
 called stroke, part, segment or pen, or in a third one without a name; of 0 and 1, a pen is down at
@@ -34,6 +34,7 @@ from onpath.models.studies.table_file import (
 
 PAIRS = (("x", "y"), ("z1", "z2"), ("y1", "y2"), ("y2", "y3"))
 """Names of the columns of a point, the first ones that a table has."""
+HEAD = 4000  # [B], in which a comment with names is looked for
 PENS = ("stroke", "pen", "pen_down", "part", "segment")
 """Names of a column that numbers the lines, or is 1 where the pen is down and else 0."""
 _U = "(mm|cm|m|in)"
@@ -51,12 +52,13 @@ def strokes_of_table(data: bytes, unit: str | None) -> list[Stroke]:
     Raises:
         CodedError: the data are not such a table; the message names line and column.
     """
-    with io.TextIOWrapper(
-        io.BytesIO(data), encoding_of(data[:4]), errors="replace", newline=None
-    ) as file:
+    encoding = encoding_of(data[:4])
+    with io.TextIOWrapper(io.BytesIO(data), encoding, errors="replace", newline=None) as file:
         rows = _rows(file)
         first = next((row for row in rows if row[1]), (1, list[str]()))
-        names = [] if _numeric(first[1]) else first[1]
+        names = _noted(data[:HEAD].decode(encoding, "replace"), first)
+        rows = chain([first], rows) if names else rows
+        names = names or ([] if _numeric(first[1]) else first[1])
         places, stated = _columns(names, first) if names else ((0, 1), None)
         groups = _groups(rows if names else chain([first], rows), places, names)
     if not groups:
@@ -74,6 +76,19 @@ def strokes_of_table(data: bytes, unit: str | None) -> list[Stroke]:
         )
         for number, each in enumerate(points, start=1)
     ]
+
+
+def _noted(head: str, first: Row) -> list[str]:
+    """Names in a comment just before the numbers, as NumPy and others write them; else none."""
+    lines = head.splitlines()[: first[0] - 1]
+    if not lines or not lines[-1].startswith("#") or not _numeric(first[1]):
+        return []
+    text = lines[-1].lstrip("# ")
+    separator = _separator(text)
+    names = text.split() if separator == " " else [each.strip() for each in text.split(separator)]
+    plain = [_name_and_unit(name.lower())[0] for name in names]
+    known = any(all(name in plain for name in pair) for pair in PAIRS)
+    return names if known and len(names) == len(first[1]) else []
 
 
 def _rows(file: io.TextIOWrapper) -> Iterator[Row]:

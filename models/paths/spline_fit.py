@@ -32,6 +32,7 @@ ROUNDINGS = ((2e-4, 1.0), (3e-4, 1.1), (4e-4, 1.2), (5e-4, 1.35), (6e-4, 1.5), (
 """Width of the smoothing, [m], and factor of the caps' radius; the later ones if bends need it."""
 STEP = 1e-4  # [m], arc length between two points of a line, unless it is long
 MOST_STEPS = 40_000  # of a line
+MOST_SEEN = 100_000  # places of a curve that are compared with its drawing
 CUSP = float(np.cos(np.deg2rad(110)))  # cosine of the turn from which a corner is a cusp
 CAP = (6e-4, 1.2e-3)  # [m], least and largest radius of the half circle in the place of a cusp
 TAPER = 8  # length along which a line makes room for this half circle, in radii
@@ -43,6 +44,7 @@ SLOW = 0.05  # least speed as a share of `QUICK`, so that σ' is nowhere 0
 AT_ENDS = 0.3  # the same at the ends of an open path
 EASING = 2e-3  # [m], over which bends are averaged, and the speed is smoothed
 CLOSE = 0.0025  # deviation at which pieces suffice, as a share of the drawing's size
+HOPELESS = 0.02  # the same beyond which the most pieces are too few, however round the corners are
 FIRST_PIECES = 24
 DENSITY = 12  # points on each piece
 STIFFNESS = 1e-7  # w, for each point of a piece
@@ -108,11 +110,11 @@ def _through(lines: list[Array], closed: bool, returns: bool = False) -> SplineC
         cap = factor * float(np.clip(0.008 * size, *CAP))
         smooth = [_rounded(each, closed, width, cap) for each in lines]
         line = _joined(smooth, closed, returns, size)
-        found = _fitted(line, CLOSE * size)
+        found, off = _fitted(line, CLOSE * size)
         bend = _sharpest(found)
         if bend < sharpest:
             sharpest, best = bend, found
-        if bend <= 1 / LEAST_RADIUS:
+        if bend <= 1 / LEAST_RADIUS or off > HOPELESS * size:
             break
     assert best is not None
     return compared(best, lines)
@@ -358,19 +360,21 @@ def _eased(slowness: Array, steps: Array, closed: bool) -> Array:
     return np.asarray(gaussian_filter1d(high, width, mode=mode), dtype=float)
 
 
-def _fitted(line: Line, close: float) -> SplineCurve:
-    """A line as a path of as many pieces as are needed to be `close` to it, [m].
+def _fitted(line: Line, close: float) -> tuple[SplineCurve, float]:
+    """A line as a path of as many pieces as are needed to be `close` to it, and how close it is.
+
+    Both are in [m]; with `MOST_PIECES` it may be farther away.
 
     The bends of a first fit decide on the speed of the second one.
     """
     time = _times(line, _bends(line))
-    first = _in_pieces(line, time, close)
+    first, _ = _in_pieces(line, time, close)
     theta = -np.pi + PERIOD * time / time[-1]
     return _in_pieces(line, _times(line, np.abs(first.curvature(theta))), close)
 
 
-def _in_pieces(line: Line, time: Array, close: float) -> SplineCurve:
-    """The path of a line that is passed at given times."""
+def _in_pieces(line: Line, time: Array, close: float) -> tuple[SplineCurve, float]:
+    """The path of a line that is passed at given times, and how far it is from it, [m]."""
     pieces = FIRST_PIECES
     while True:
         at: Array = np.linspace(0.0, float(time[-1]), DENSITY * pieces + 1)
@@ -379,9 +383,9 @@ def _in_pieces(line: Line, time: Array, close: float) -> SplineCurve:
         raised, duration = _raised(line.pen, time), round(float(time[-1]), DECIMALS)
         curve = SplineCurve(line.closed, grained(points), raised=raised, duration=duration)
         down = np.interp(at, time, line.pen.astype(float)) > 0.5
-        near = float(np.abs(there - z)[down].max()) < close
-        if pieces == MOST_PIECES or (near and _sharpest(curve) < 1 / LEAST_RADIUS):
-            return curve
+        off = float(np.abs(there - z)[down].max())
+        if pieces == MOST_PIECES or (off < close and _sharpest(curve) < 1 / LEAST_RADIUS):
+            return curve, off
         pieces = min(3 * pieces // 2, MOST_PIECES)
 
 
@@ -436,7 +440,8 @@ def compared(curve: SplineCurve, lines: Sequence[Array]) -> SplineCurve:
     from scipy.spatial import KDTree
 
     dense = np.vstack([_even(line)[0] for line in lines])
-    theta = curve.sample(max(4 * curve.grid, int(2 * float(curve.arc(np.array(np.pi))) / STEP)))
+    count = min(int(2 * float(curve.arc(np.array(np.pi))) / STEP), MOST_SEEN)
+    theta = curve.sample(max(4 * curve.grid, count))
     seen = curve.at(theta[curve.draws(theta)])
     distances = KDTree(dense).query(seen)[0], KDTree(seen).query(dense)[0]
     thin = sum(len(line) for line in lines) // DENSE + 1

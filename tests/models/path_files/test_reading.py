@@ -100,6 +100,7 @@ WRITTEN = {
     "comment": b"# of 2026\n" + TABLE.encode(),
     "without a last end": TABLE.rstrip().encode(),
     "other columns": b"t,y,x\n0,0,0.05\n1,0.04,0\n2,0.01,-0.05\n3,-0.04,0\n",
+    "names in a comment": b"# 3\n# t, y_m, x_m\n0,0,0.05\n1,0.04,0\n2,0.01,-0.05\n3,-0.04,0\n",
     "minus of a typesetter": TABLE.replace("-", "\u2212").encode(),
     "names of the plane": TABLE.replace("x,y", "z1,z2").encode(),
     "unit in a name": TABLE.replace("x,y", "x_m,y_m").encode(),
