@@ -40,6 +40,32 @@ def scrawl(seed: int) -> SplineCurve:
     return spline_through([line], False)
 
 
+def signature(seed: int, size: float = 0.12) -> Array:
+    """A stroke like a name, as a mouse, a finger or a pen gives it (0, 1, 2 modulo 3), [m].
+
+    Loops of random height go on to the right; a third of them has a flourish back below the name.
+    """
+    rng, hand = np.random.default_rng(seed), seed % 3
+    n = int(rng.integers(4, 9))
+    t = np.linspace(0, n, 1200)
+    high = np.interp(t, np.arange(n + 1), rng.uniform(0.25, 1.0, n + 1))
+    wide = rng.uniform(0.5, 0.9) * np.interp(t, np.arange(n + 1), rng.uniform(0.3, 1, n + 1))
+    x = 0.8 * t + wide * np.cos(2 * np.pi * t + rng.uniform(0, 6))
+    y = high * np.sin(2 * np.pi * t) + 0.25 * rng.normal() * np.sin(np.pi * t / n)
+    x += 0.3 * high * np.sin(2 * np.pi * t) * rng.uniform(0, 1)
+    if hand == 0:
+        u = np.linspace(0, 1, 300)
+        down = (-1.5 - y[-1]) * np.sin(np.pi / 2 * u) + 0.2 * np.sin(9 * u)
+        x = np.r_[x, x[-1] - u * (x[-1] - x[0]) * rng.uniform(0.6, 1.1)]
+        y = np.r_[y, y[-1] + down]
+    rate = (60, 90, 200)[hand]  # [Hz]
+    z = np.column_stack([x, y])[:: max(1, int(1500 / (rate * n / 3)))]
+    z = (z - (z.max(0) + z.min(0)) / 2) / np.ptp(z, axis=0).max() * size
+    if hand == 0:
+        return np.round(z / (size / 400)) * (size / 400)
+    return z + rng.normal(0, size * 0.002, z.shape) if hand == 1 else z
+
+
 def letters() -> SplineCurve:
     """An A and an L in three strokes, 60 mm wide."""
     strokes = (

@@ -192,8 +192,7 @@ def _remade(
             options = known[name].options
             places = [options.index(check.equals) for check in named if check.name == name]
             places.append(options.index(value_of(own, name)))
-            if len(offered := options[min(places) : max(places) + 1]) > 1:
-                remade[name] = offered
+            remade[name] = options[min(places) : max(places) + 1]
     return remade
 
 
