@@ -192,7 +192,8 @@ def _remade(
             options = known[name].options
             places = [options.index(check.equals) for check in named if check.name == name]
             places.append(options.index(value_of(own, name)))
-            remade[name] = options[min(places) : max(places) + 1]
+            if len(offered := options[min(places) : max(places) + 1]) > 1:
+                remade[name] = offered
     return remade
 
 

@@ -17,6 +17,7 @@ from hypothesis import strategies as st
 
 import onpath
 from onpath.app.cli.main import run_command
+from onpath.app.exports.site.step_figures import step_figure
 from onpath.app.exports.standalone.figure_choice import CONTROLS, chosen
 from onpath.app.exports.standalone.figure_data import figure_data
 from onpath.app.exports.standalone.figure_module import figure_module
@@ -30,6 +31,7 @@ from onpath.models.control.laws.registry import law_named
 from onpath.models.paths.path_design import presets
 from onpath.models.standalone.curve_scans import curve_scans
 from onpath.models.systems.catalogue import ROBOTS
+from tests.support.built_in import built_in_course
 from tests.support.cases import drawn, some
 from tests.support.drawings import random_drawing, scrawl
 from tests.support.page_scans import steps_along
@@ -243,3 +245,11 @@ def test_a_figure_has_the_plan_of_its_laws_and_lets_nothing_change_it() -> None:
     for unwanted in ({"controls": ["drag"]}, {"sliders": ["torque_limit"]}, {"sliders": ["speed"]}):
         with pytest.raises(ValueError, match=r"drag|cannot be changed"):
             chosen("five_bar", laws, {"circle": curve}, values, **unwanted)  # type: ignore[arg-type]
+
+
+def test_no_step_offers_a_choice_of_one_option() -> None:
+    """A parameter that makes another robot is offered where a page has several of them."""
+    lesson = built_in_course()[0].lesson("07b-where-the-theorem-decides", "en")
+    for index in range(len(lesson.steps)):
+        offered = step_figure(lesson, index).choice.remade
+        assert all(len(values) > 1 for values in offered.values()), (index, offered)
