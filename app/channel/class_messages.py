@@ -16,6 +16,7 @@ Order = Literal[
     "back",
     "next",
     "close_votes",
+    "timer",
     "open_votes",
     "ask_again",
     "play",
@@ -33,6 +34,8 @@ Order = Literal[
     "record",
     "end",
     "forget",
+    "let_in",
+    "throw_out",
 ]
 """What a button of the teacher's page does; see `TeacherOrders`."""
 
@@ -41,7 +44,7 @@ class Lead(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag=
     """An order of a teacher to the class; refused from any other page.
 
     Attributes:
-        member: number of the student whom it concerns.
+        member: number of the student whom it concerns, or of the phone.
     """
 
     do: Order
@@ -63,3 +66,17 @@ class WallMessage(Struct, frozen=True, tag_field="is", tag="wall"):
     asked: str
     closing: int | None
     note: str
+
+
+class RemoteMessage(Struct, frozen=True, tag_field="is", tag="remote"):
+    """What a remote control is told besides the form of the class, whenever it changes.
+
+    Attributes:
+        number: that it shows until it is let in; empty once it is.
+        text: what to do with the number.
+        votes: whether a vote is open, so that the phone is to stay awake.
+    """
+
+    number: str
+    text: str
+    votes: bool

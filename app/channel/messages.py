@@ -14,7 +14,7 @@ from typing import Annotated, Any, Literal
 import msgspec
 from msgspec import UNSET, Meta, Struct
 
-from onpath.app.channel.class_messages import Lead, WallMessage
+from onpath.app.channel.class_messages import Lead, RemoteMessage, WallMessage
 from onpath.app.channel.file_messages import (
     DownloadMessage,
     DownloadPart,
@@ -213,6 +213,7 @@ LabMessage = (
     | ClassMessage
     | SeatAnswer
     | WallMessage
+    | RemoteMessage
 )
 """What the server sends."""
 

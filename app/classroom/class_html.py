@@ -10,9 +10,10 @@ from math import ceil
 from onpath.app.classroom.classroom import Member
 from onpath.app.classroom.results import Asked, Distribution, tasks_passed
 from onpath.app.classroom.sketches_html import ALL, Picks, SketchRound, sketches_view
-from onpath.app.common.palette import AMBER, GREEN, GREY
+from onpath.app.common.palette import AMBER, AZURE, GREEN, GREY, VIOLET
 from onpath.app.common.qr_code import qr_code
 from onpath.app.common.templates import render
+from onpath.app.viser_adapter.addresses import REMOTE, WALL
 from onpath.lessons.concept_test.titles import titles_of_tests
 from onpath.lessons.course import Course
 from onpath.lessons.option_order import LETTERS
@@ -34,14 +35,14 @@ def class_code(
     count: int | None,
     words: Words,
     large: bool = False,
-    wall: str = "",
+    screens: str = "",
 ) -> str:
     """The address of the class, as a QR code, too, and its code, in large type for the projector.
 
     Args:
         is_local: whether only this machine can open the address.
         count: number of students; None: it is not told.
-        wall: address of the class's wall; empty: it is not told.
+        screens: address below which wall and remote control are; empty: it is not told.
     """
     return render(
         "class/code.html",
@@ -51,7 +52,9 @@ def class_code(
         count=count,
         words=words,
         large=large,
-        wall=wall,
+        wall=WALL if screens else "",
+        remote=f"{screens}{REMOTE}" if screens else "",
+        remote_qr=qr_code(f"{screens}{REMOTE}") if screens and not is_local else None,
     )
 
 
@@ -215,6 +218,31 @@ def hidden_view(block: Asked, found: Distribution | None, words: Words, large: b
     if isinstance(block, Sketch | NumberQuestion):
         return render("class/prediction.html", block=block, facts=facts, large=large)
     return choices_view(block, (), revealed=False, words=words, large=large, facts=facts)
+
+
+DOTS = {
+    "class.dots_here": GREY,
+    "class.dots_answered": AZURE,
+    "class.dots_right": GREEN,
+    "class.dots_changed": VIOLET,
+}
+"""Colours of students' dots, by the message that says how many there are."""
+
+
+def dots_view(states: Sequence[str], words: Words) -> str:
+    """A dot for each student who is here, and how many are in each state.
+
+    Args:
+        states: keys of `DOTS`.
+    """
+    order = list(DOTS)
+    shown = [(state, DOTS[state].hex) for state in sorted(states, key=order.index, reverse=True)]
+    counts = [
+        (DOTS[state].hex, words(state, count=states.count(state)))
+        for state in order
+        if state in states
+    ]
+    return render("class/dots.html", dots=shown, counts=counts)
 
 
 def step_view(title: str, remark: str, large: bool = False) -> str:

@@ -53,6 +53,7 @@ class StoredClass(msgspec.Struct, frozen=True):
     display: Any = None
     votes: list[Any] = []
     days: Count = 0
+    phones: Annotated[list[str], msgspec.Meta(max_length=10_000)] = []
 
 
 def to_stored(state: ClassState, now: float) -> Stored:
@@ -80,6 +81,7 @@ def to_stored(state: ClassState, now: float) -> Stored:
         display=asdict(state.display),
         votes=[asdict(each) for each in state.votes],
         days=state.days,
+        phones=list(state.phones),
     )
     return msgspec.to_builtins(stored)
 
@@ -118,6 +120,7 @@ def from_stored(data: Stored | None, progress: Callable[[str], Progress], now: f
         members=members,
         votes=tuple(filter(None, map(_vote, kept.votes[-MOST_VOTES:]))),
         days=kept.days,
+        phones=tuple(kept.phones),
     )
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import hashlib
 import hmac
 import re
+import secrets
 import threading
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -31,6 +32,8 @@ from onpath.models.errors import CodedError
 
 MOST_MEMBERS = 300
 MOST_VOTES = 1000
+MOST_ASKING = 8  # pages that may ask at once to become a teacher's
+NUMBER_LASTS = 120.0  # [s] for which a number lets a page in
 Push = TakeSetup | TakeStep
 NOTHING_DONE = Progress()
 
@@ -108,6 +111,7 @@ class ClassState:
     Attributes:
         joined: number of students who have ever joined.
         passes: hashes of the teachers' passes.
+        phones: of those, the ones that were given by a number; see `Classroom.let_in`.
         members: students by lab code, in order of joining.
         votes: on the questions that were put to the class.
         days: after so many days without a change, the class is deleted; 0: as many as may be.
@@ -117,9 +121,23 @@ class ClassState:
     orders: Orders = field(default_factory=Orders)
     display: Display = field(default_factory=Display)
     passes: frozenset[str] = frozenset()
+    phones: tuple[str, ...] = ()
     members: Mapping[str, Member] = field(default_factory=dict)
     votes: tuple[Vote, ...] = ()
     days: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Asking:
+    """A page that asks to become a teacher's.
+
+    Attributes:
+        grant: gives it its pass.
+        until: by the class's clock, [s].
+    """
+
+    grant: Callable[[str], None]
+    until: float
 
 
 @dataclass(slots=True)
@@ -143,6 +161,7 @@ class Classroom:
     code: str = field(init=False)
     state: ClassState = field(default_factory=ClassState)
     claims: dict[str, str] = field(default_factory=dict[str, str], init=False)
+    _asking: dict[int, Asking] = field(default_factory=dict[int, Asking], init=False)
     _lock: threading.RLock = field(default_factory=threading.RLock)
     _door: Admission = field(init=False)
 
@@ -179,8 +198,68 @@ class Classroom:
 
     def revoke(self, shown: str | None) -> None:
         """Revoke a browser's pass."""
+        self._revoke(_hash(shown or ""))
+
+    def _revoke(self, given: str) -> None:
         with self._lock:
-            self.state = replace(self.state, passes=self.state.passes - {_hash(shown or "")})
+            phones = tuple(each for each in self.state.phones if each != given)
+            passes = self.state.passes - {given}
+            self.state = replace(self.state, passes=passes, phones=phones)
+
+    def ask_in(self, grant: Callable[[str], None]) -> int:
+        """A page asks to become a teacher's, without a key.
+
+        Args:
+            grant: called with its pass when it is let in.
+
+        Returns:
+            The number that the page is to show, for `NUMBER_LASTS` seconds; 0 if too many ask.
+        """
+        with self._lock:
+            known = self.asking
+            if len(known) >= MOST_ASKING:
+                return 0
+            number = 0
+            while not number or number in known:
+                number = 1000 + secrets.randbelow(9000)
+            self._asking[number] = Asking(grant, self.clock() + NUMBER_LASTS)
+            return number
+
+    @property
+    def asking(self) -> list[int]:
+        """The numbers of the pages that ask to become a teacher's, the longest waiting first."""
+        with self._lock:
+            now = self.clock()
+            self._asking = {n: each for n, each in self._asking.items() if each.until > now}
+            return list(self._asking)
+
+    def let_in(self, number: int) -> None:
+        """Make the page that shows a number a teacher's; a number counts once.
+
+        Raises:
+            ValueError: no page shows it any more.
+        """
+        with self._lock:
+            asking = self._asking.get(number) if number in self.asking else None
+            if asking is None:
+                raise CodedError("error.number_is_gone")
+            del self._asking[number]
+            new = new_pass()
+            given, state = _hash(new), self.state
+            passes, phones = state.passes | {given}, (*state.phones, given)
+            self.state = replace(state, passes=passes, phones=phones)
+        asking.grant(new)
+
+    def take_back(self, number: int) -> None:
+        """A page does not ask any more."""
+        with self._lock:
+            self._asking.pop(number, None)
+
+    def throw_out(self, place: int) -> None:
+        """Revoke the pass of a phone, by its place among them, from 1 on."""
+        phones = self.state.phones
+        if place in range(1, len(phones) + 1):
+            self._revoke(phones[place - 1])
 
     # Members
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from onpath.lessons.kept.option_keys import second_key
-from onpath.lessons.progress import Answer, Notes, Progress, Truth, given_to
+from onpath.lessons.progress import Answer, Given, Notes, Progress, Truth, given_to
 from onpath.lessons.schema import Choice, Lesson, NumberQuestion, Prediction, Quiz, Step
 from onpath.lessons.votes import Vote, counted, is_late, is_skipped
 
@@ -119,6 +119,25 @@ def distribution(
             for of, one in both
         ),
     )
+
+
+def is_right(block: Asked, given: Given) -> bool:
+    """Whether an answer is right; of a drawn curve it is not said."""
+    if isinstance(block, NumberQuestion):
+        return given.number is not None and block.accepts(given.number)
+    option = None if given.answer is None else given.answer.option
+    if not isinstance(block, Choice | Quiz) or option not in range(len(block.options)):
+        return False
+    return block.options[option].right
+
+
+def is_same(one: Given, other: Given) -> bool:
+    """Whether two answers say the same."""
+    said = [
+        (each.number, each.answer and (each.answer.option, each.answer.values))
+        for each in (one, other)
+    ]
+    return said[0] == said[1]
 
 
 def have_all_answered(students: Sequence[Progress], votes: Iterable[Vote]) -> bool:

@@ -12,6 +12,7 @@ from onpath.app.classroom.teaching.teacher_context import TeacherChoices, Teache
 from onpath.app.lab.commands import CloseLesson, ReportState, TakeSetup
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.setups.capture import capture
+from onpath.app.server.class_remote import ClassRemotes
 from onpath.app.server.class_wall import ClassWall
 from onpath.app.server.followed_lab import FollowedLab
 from onpath.app.server.lab_registry import LabRegistry
@@ -24,6 +25,7 @@ from onpath.app.storage.records import HeldElsewhere, Records
 from onpath.app.storage.write_behind import WriteBehind
 from onpath.app.viser_adapter.addresses import class_address
 from onpath.lessons.course import Course
+from onpath.lessons.progress import Progress
 from onpath.models.errors import CodedError
 
 
@@ -54,6 +56,8 @@ class ClassService:
         self._records, self._keeper = records, keeper
         self._visits, self._lost = visits, lost
         self._places = dict[str, tuple[Visit, Callable[[str], None]]]()  # who asks for one, by lab
+        self.remotes = ClassRemotes(classroom, course, self._teaching_alone)
+        self.remotes.rounds.start()
         self.wall = ClassWall(classroom, course=course, registry=registry, send=send)
         self._attendance = ClassSync(classroom, self._student)
         self._attendance.rounds.start()
@@ -65,6 +69,7 @@ class ClassService:
     def stop(self) -> None:
         """Stop, with the server."""
         self._attendance.rounds.stop()
+        self.remotes.rounds.stop()
         self.wall.close()
         if self._class_keeper is not None:
             self._class_keeper.stop()
@@ -189,6 +194,7 @@ class ClassService:
             may_lead=lambda: self._class.is_pass(shown),
             address=f"{site}{class_address(self._class.code)}",
             is_local=is_local(site),
+            has_lab=True,
             progress=lambda: lab.lessons.progress,
             presents=lambda: lab.simulation.settings.presenting,
             why_still=self.followed(chosen).why_still,
@@ -197,6 +203,29 @@ class ClassService:
             give_place=self._give_place,
             forget=self._forget,
             stop=stop,
+        )
+
+    def _teaching_alone(
+        self, visit: Visit, site: str, teacher: tuple[str, TeacherChoices]
+    ) -> TeacherContext:
+        """A page of a teacher's that shows no lab; see `teaching`."""
+        shown, chosen = teacher
+        progress = Progress(language=visit.language)
+        return TeacherContext(
+            classroom=self._class,
+            chosen=chosen,
+            may_lead=lambda: self._class.is_pass(shown),
+            address=f"{site}{class_address(self._class.code)}",
+            is_local=is_local(site),
+            has_lab=False,
+            progress=lambda: progress,
+            presents=lambda: False,
+            why_still=lambda _: "",
+            send_setup=lambda: None,
+            delete=self._delete,
+            give_place=self._give_place,
+            forget=self._forget,
+            stop=lambda: self._class.revoke(shown),
         )
 
     def _student(self, code: str) -> tuple[Lab, bool] | None:

@@ -52,7 +52,7 @@ from onpath.app.storage.expiry import Expiry
 from onpath.app.storage.lease_keeper import LeaseKeeper
 from onpath.app.storage.records import NotKept, Records
 from onpath.app.storage.write_behind import WriteBehind
-from onpath.app.viser_adapter.addresses import class_address
+from onpath.app.viser_adapter.addresses import WALL, class_address
 from onpath.app.viser_adapter.connections import turn_away
 from onpath.app.viser_adapter.scene_release import clear_scene
 from onpath.app.viser_adapter.secure_server import make_server
@@ -230,7 +230,8 @@ class LabServer:
             self.visits.send_away({visit.number})
             return
         if service is not None and visit.screen:
-            service.wall.add(visit, site_for_students(visit.hello.site, self.site))
+            screens = service.wall if visit.screen == WALL else service.remotes
+            screens.add(visit, site_for_students(visit.hello.site, self.site))
             return
         visit.at_end(partial(self._room.leave, visit.number))
         self._room.admit(

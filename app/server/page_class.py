@@ -28,7 +28,7 @@ class PageClass:
 
     Args:
         post: receives the commands for the teacher's own lab.
-        delivery: brings files to the page.
+        delivery: brings files to the page; None if it takes none.
     """
 
     def __init__(
@@ -36,7 +36,7 @@ class PageClass:
         teaching: TeacherContext,
         course: Course,
         post: Callable[[Command], object],
-        delivery: Delivery,
+        delivery: Delivery | None = None,
     ) -> None:
         self._teaching, self._course, self._delivery = teaching, course, delivery
         self._orders = TeacherOrders(course, teaching, post, self._deliver)
@@ -102,12 +102,14 @@ class PageClass:
             self._busy = False
 
     def _deliver(self, name: str, make: Callable[[], bytes]) -> None:
-        words = Words(self._teaching.progress().language)
-        self._delivery.making(name, words)
+        words, delivery = Words(self._teaching.progress().language), self._delivery
+        if delivery is None:
+            return
+        delivery.making(name, words)
         try:
-            self._delivery.ready(name, make(), words)
+            delivery.ready(name, make(), words)
         except Exception:
-            self._delivery.failed(name, words)
+            delivery.failed(name, words)
             raise
 
 

@@ -35,6 +35,7 @@ _PLAIN = (
         "stage.paused",
         "invite.lesson_button",
     ),
+    *("remote.title", "remote.plain"),
     *SHELL,
 )
 _FILLED = {

@@ -1,6 +1,7 @@
 """The addresses of a lab behind a proxy: /c/CODE/ for a class, and /l/NAME/ for all others.
 
-All of them serve the same page, but for /c/CODE/wall, the class's wall. They let a proxy send
+All of them serve the same page, but for /c/CODE/wall and /c/CODE/remote, the class's wall and its
+teacher's remote control. They let a proxy send
 everybody who belongs together to one process, by the path alone: viser's page opens its websocket
 at its own address.
 
@@ -20,8 +21,8 @@ from websockets.http11 import Request, Response
 from onpath.app.common.access_codes import new_code
 
 CLASS, ALONE = "c", "l"
-WALL = "wall"
-SCREENS = (WALL,)
+WALL, REMOTE = "wall", "remote"
+SCREENS = (WALL, REMOTE)
 """Pages of a class that have no lab of their own, by the last part of their address."""
 COOKIE = "onpath"  # name of the cookie that brings a browser back to its /l/NAME/
 _PLACE = re.compile(r"/([cl])/([a-z0-9]{1,32})(?=[/?]|$)", re.ASCII | re.IGNORECASE)

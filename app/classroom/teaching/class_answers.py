@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil, inf
 from typing import Protocol
 
@@ -17,6 +17,8 @@ from onpath.app.classroom.results import (
     asked_at,
     distribution,
     is_asked_again,
+    is_right,
+    is_same,
     truth_of,
     votes_at,
 )
@@ -28,10 +30,16 @@ from onpath.app.lab.dry_runs.step_truth import computed_truth
 from onpath.lessons.concept_test.concept_test import TESTS
 from onpath.lessons.course import Course
 from onpath.lessons.kept.known_choices import of_today
-from onpath.lessons.progress import Progress, Truth
-from onpath.lessons.schema import Lesson, NumberQuestion, Prediction, Quiz
-from onpath.lessons.votes import vote_on
+from onpath.lessons.progress import Given, Notes, Progress, Truth
+from onpath.lessons.schema import Lesson, NumberQuestion, Prediction, Quiz, Sketch
+from onpath.lessons.votes import Vote, counted, is_skipped, vote_on
 from onpath.lessons.words import Words
+
+FEW, MANY = 0.3, 0.7
+"""Shares of right answers below which a teacher may explain, and above which go on; between them,
+a discussion helps most (Crouch and Mazur, American Journal of Physics 69, 2001)."""
+PROPOSALS = "class.proposal_explain", "class.proposal_discuss", "class.proposal_go_on"
+NOTHING = Notes()
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,6 +48,16 @@ class Students:
 
     progress: list[Progress]
     here: list[bool]
+
+
+@dataclass(frozen=True, slots=True)
+class AskedFirst:
+    """A question, and the votes on it: before a discussion, and after it."""
+
+    lesson: str
+    item: str
+    block: Asked
+    votes: tuple[Vote | None, ...]
 
 
 class Onlooker(Protocol):
@@ -66,6 +84,7 @@ class ClassAnswers:
 
     Args:
         submit: runs what takes long, perhaps later; the truth is not known until then.
+        peeks: whether the answers are looked at before they are shown.
     """
 
     def __init__(
@@ -74,7 +93,10 @@ class ClassAnswers:
         words: Words,
         teaching: Onlooker,
         submit: Callable[[Callable[[], None]], None] = lambda work: work(),
+        *,
+        peeks: bool = False,
     ) -> None:
+        self._peeks = peeks
         self._course, self._words, self._teaching = course, words, teaching
         self._submit = submit
         self._computed: dict[tuple[str, int], Truth | None] = {}
@@ -82,7 +104,8 @@ class ClassAnswers:
     @property
     def _display(self) -> Display:
         classroom = self._teaching.classroom
-        return classroom.display.seen(classroom.now())
+        display = classroom.display.seen(classroom.now())
+        return replace(display, shown=True) if self._peeks else display
 
     def view(self, large: bool, *, silent: bool = False) -> str:
         """The answers to what the displayed step asks, or to a question of a test.
@@ -96,11 +119,7 @@ class ClassAnswers:
         lesson = self._course.lesson(name, self._words.language)
         if silent and not self._display.shown:
             return self._asked(lesson, index, large)
-        members = list(self._teaching.classroom.present().values())
-        students = Students(
-            [of_today(self._course, member.progress) for member in members],
-            [member.connected for member in members],
-        )
+        students = self._students()
         if name in self._course.tests:
             return self._test(lesson, index, students.progress, large)
         views = list[str]()
@@ -113,6 +132,76 @@ class ClassAnswers:
             views += self._of_votes(lesson, index)
         title = step_label(lesson, index, self._words)
         return "".join(views) or page.step_view(title, self._words("class.no_prediction"), large)
+
+    def _students(self) -> Students:
+        members = list(self._teaching.classroom.present().values())
+        return Students(
+            [of_today(self._course, member.progress) for member in members],
+            [member.connected for member in members],
+        )
+
+    def dots(self) -> str:
+        """Who is here, as dots without names: whether each has answered what the step asks first,
+        is right, or has changed the answer after a discussion."""
+        words, states = self._words, list[str]()
+        asked = self._first()
+        for notes in self._notes_here(asked):
+            first, second = notes
+            last = second or first
+            if asked is None or last is None or is_skipped(last):
+                states.append("class.dots_here")
+            elif second is not None and first is not None and not is_same(first, second):
+                states.append("class.dots_changed")
+            else:
+                right = is_right(asked.block, last)
+                states.append("class.dots_right" if right else "class.dots_answered")
+        return page.dots_view(states, words)
+
+    def proposal(self) -> str:
+        """What might be done next, by how many are right, once the votes are closed; or nothing."""
+        asked, classroom = self._first(), self._teaching.classroom
+        if asked is None or isinstance(asked.block, Sketch):
+            return ""
+        votes = [each for each in asked.votes if each is not None]
+        if not votes or any(each.is_open(classroom.now()) for each in votes):
+            return ""
+        last = [second or first for first, second in self._notes_here(asked)]
+        given = [each for each in last if each is not None and not is_skipped(each)]
+        if not given:
+            return ""
+        share = sum(is_right(asked.block, each) for each in given) / len(given)
+        explain, discuss, go_on = PROPOSALS
+        key = explain if share < FEW else discuss if share <= MANY else go_on
+        return self._words(key, percent=round(100 * share))
+
+    def _first(self) -> AskedFirst | None:
+        """What the displayed step asks first."""
+        name, index = StepsForAll(self._course, self._words.language).shown(self._display)
+        lesson = self._course.lesson(name, self._words.language)
+        votes = self._teaching.classroom.votes
+        for item, block in asked_at(lesson, index).items():
+            if name not in self._course.tests:
+                both = tuple(vote_on(votes, name, item, again) for again in (False, True))
+                return AskedFirst(name, item, block, both)
+        return None
+
+    def _notes_here(self, asked: AskedFirst | None) -> list[tuple[Given | None, Given | None]]:
+        """Of each student who is here, the first answer that counts, and the one after a
+        discussion."""
+        students, found = self._students(), list[tuple[Given | None, Given | None]]()
+        for progress, is_here in zip(students.progress, students.here, strict=True):
+            if not is_here:
+                continue
+            if asked is None:
+                found.append((None, None))
+                continue
+            notes = progress.notes.get(asked.lesson, NOTHING)
+            first, second = (
+                counted(notes, asked.item, vote, again)
+                for vote, again in zip(asked.votes, (False, True), strict=True)
+            )
+            found.append((first, second))
+        return found
 
     def _asked(self, lesson: Lesson, index: int, large: bool) -> str:
         """What the step asks, or the question of a test."""

@@ -24,6 +24,7 @@ class TeacherChoices:
         pair: which of `PAIRS` of gains are the axes.
         route: the route that is chosen; empty for the first one.
         setup: the share code that was sent last.
+        peeks: whether the answers are shown here before they are on the wall.
         told: the outcome of the last order.
         refused: why the last value of a field was refused, by field.
     """
@@ -36,6 +37,7 @@ class TeacherChoices:
     pair: int = 0
     route: str = ""
     setup: str = ""
+    peeks: bool = False
     told: str = ""
     refused: dict[str, str] = field(default_factory=dict)
 
@@ -49,6 +51,7 @@ class TeacherContext:
         address: where students join the class.
         is_local: whether only this machine can open it.
         progress: the teacher's own progress through the lessons.
+        has_lab: whether the page shows a lab: the teacher's own, or that of a student.
         presents: whether the teacher presents, with large type for a projector.
         why_still: why the displayed lab is missing or stopped; empty if it runs.
         send_setup: sends the set-up of the teacher's own lab to all students.
@@ -63,6 +66,7 @@ class TeacherContext:
     may_lead: Callable[[], bool]
     address: str
     is_local: bool
+    has_lab: bool
     progress: Callable[[], Progress]
     presents: Callable[[], bool]
     why_still: Callable[[Words], str]

@@ -24,7 +24,6 @@ from onpath.app.classroom.teaching.lesson_labels import lesson_titles, step_labe
 from onpath.app.classroom.teaching.steps_for_all import StepsForAll
 from onpath.app.classroom.teaching.teacher_context import TeacherChoices, TeacherContext
 from onpath.app.lab.commands import TakeStep
-from onpath.app.viser_adapter.addresses import WALL
 from onpath.lessons.course import Course
 from onpath.lessons.pace import Pace
 from onpath.lessons.words import Words
@@ -48,6 +47,7 @@ class TeacherForm:
     ) -> None:
         self._course, self._words, self._teaching = course, words, teaching
         self._answers, self._steps = answers, StepsForAll(course, words.language)
+        self._peek = ClassAnswers(course, words, teaching, peeks=True)
         self._titles = {name: title for title, name in lesson_titles(course, words).items()}
 
     def shown(self) -> tuple[FormMessage, dict[str, FieldValue]]:
@@ -55,23 +55,49 @@ class TeacherForm:
         groups = [self._lead(), self._class()]
         if self._course.lessons:
             groups += [self._predictions(), self._pace()]
-        groups += [self._gains(), self._record()]
+        groups.append(self._gains())
+        if self._teaching.has_lab:
+            groups.append(self._record())
         return FormMessage(place="class", groups=tuple(groups)), dict(self._values())
 
     # Fields.
 
     def _lead(self) -> FormGroup:
-        """What is always seen."""
-        words, orders, fields = self._words, self._teaching.classroom.orders, list[FormField]()
+        """What is always seen; nothing in it is final."""
+        words, orders = self._words, self._teaching.classroom.orders
+        fields = [*self._of_asking()]
         if self._course.lessons:
             fields += self._beside(-1)
             fields += self._beside(1)
+            if not self._large:  # on a projection, they stand with the question
+                fields += self._of_answers()
         freezing = "thaw" if orders.frozen else "freeze"
         label = words("class.unfreeze" if orders.frozen else "class.freeze")
         fields.append(_button(freezing, label, tone="warning"))
         if self._followed is not None:
             fields.append(_button("own_lab", words("class.own_lab")))
         return _group("lead", words("class.lead"), [_note("told"), _note("who"), *fields])
+
+    def _of_asking(self) -> Iterator[FormField]:
+        """Whether to let in the phones that ask."""
+        for number in self._teaching.classroom.asking:
+            label = self._words("class.let_in", number=str(number))
+            yield _button("let_in", label, member=number, name=f"let_in{number}")
+
+    def _of_answers(self) -> Iterator[FormField]:
+        """What is done with a question: closed, looked at, shown, asked again."""
+        words = self._words
+        yield from self._of_votes()
+        if not self._large:
+            yield _html("dots")
+            yield _note("proposal")
+            if not self._teaching.has_lab:
+                yield _switch("peeks", words("class.peek"))
+                if self._choices.peeks:
+                    yield _html("peek")
+        yield _switch("shown", words("class.show_answers"))
+        yield _switch("revealed", words("class.truth"))
+        yield _button("ask_again", words("class.ask_again"))
 
     def _beside(self, by: int) -> Iterator[FormField]:
         """The button for the next step, or for the one before, if there is one."""
@@ -100,16 +126,24 @@ class TeacherForm:
             _choice("follow", words("class.follow"), {words("class.own_lab"): 0, **followable}),
             _note("still"),
             *self._of_member(),
+            *self._of_phones(),
             _note("standing"),
         ]
         if classroom.orders.push is not None:
             fields.append(_button("end_standing", words("class.push_end")))
+        if self._teaching.has_lab:
+            fields.append(_button("send_setup", words("class.push_setup")))
         fields += [
-            _button("send_setup", words("class.push_setup")),
             _text("setup", words("class.push_code"), words("keep.paste_hint")),
             _button("stop", words("class.stop_teaching")),
         ]
         return _group("class", words("class.title"), fields)
+
+    def _of_phones(self) -> Iterator[FormField]:
+        """The phones that were let in, which can be thrown out."""
+        for at in range(1, len(self._teaching.classroom.state.phones) + 1):
+            label = self._words("class.throw_out", number=at)
+            yield _button("throw_out", label, member=at, name=f"throw_out{at}")
 
     def _of_claims(self) -> Iterator[FormField]:
         """Whether a student who has come back is the one who is away; one after the other."""
@@ -146,13 +180,8 @@ class TeacherForm:
     def _predictions(self) -> FormGroup:
         words, display = self._words, self._teaching.classroom.display
         lesson, _ = self._shown
-        fields = [
-            _switch("shown", words("class.show_answers")),
-            _switch("revealed", words("class.truth")),
-            *self._of_votes(),
-            _button("ask_again", words("class.ask_again")),
-        ]
-        if self._steps.demonstration(display) is not None:
+        fields = [*self._of_answers()] if self._large else []
+        if self._teaching.has_lab and self._steps.demonstration(display) is not None:
             fields.append(_button("play", words("class.play")))
         if self._teaching.progress().lesson:
             fields.append(_button("put_back", words("class.put_back")))
@@ -171,7 +200,9 @@ class TeacherForm:
             }
             fields.append(_choice("route", words("route.route"), routes))
             fields.append(_button("send_route", words("route.send")))
-        fields += [_switch("large", words("lesson.presenting")), _html("code_again")]
+        if self._teaching.has_lab:
+            fields.append(_switch("large", words("lesson.presenting")))
+        fields.append(_html("code_again"))
         return _group("predictions", words("class.predictions"), fields)
 
     def _of_votes(self) -> Iterator[FormField]:
@@ -181,6 +212,8 @@ class TeacherForm:
         votes = [each for each in classroom.votes if each.lesson == lesson and each.item in asked]
         if any(each.closes is None for each in votes):
             yield _button("close_votes", self._words("class.close_vote"))
+            if not self._large:
+                yield _button("timer", self._words("class.timer"))
         elif votes:
             yield _button("open_votes", self._words("class.open_vote"))
 
@@ -249,7 +282,7 @@ class TeacherForm:
             count=len(members),
             words=words,
             large=large,
-            wall="" if large else WALL,
+            screens="" if large else self._teaching.address,
         )
         yield "code", code
         yield "table", page.table(members, self._course, classroom.clock(), words)
@@ -270,6 +303,10 @@ class TeacherForm:
         yield "shown", classroom.display.shown
         yield "revealed", classroom.display.revealed
         yield "answers", self._answers.view(large)
+        yield "dots", "" if large else self._answers.dots()
+        yield "proposal", "" if large else self._answers.proposal()
+        yield "peeks", chosen.peeks
+        yield "peek", self._peek.view(large=False) if chosen.peeks else ""
         yield from zip(("lesson", "step"), self._shown, strict=True)
         yield "picked", ", ".join(map(str, chosen.picked))
         yield "route", chosen.route or next(iter(self._course.routes), "")
@@ -331,10 +368,10 @@ def _group(name: str, title: str, fields: Iterable[FormField]) -> FormGroup:
 
 
 def _button(
-    order: Order, label: str, *, tone: str = "", asks: str = "", member: int = 0
+    order: Order, label: str, *, tone: str = "", asks: str = "", member: int = 0, name: str = ""
 ) -> FormField:
     act = msgspec.to_builtins(Lead(order, member))
-    name = f"{PREFIX}{order}"
+    name = f"{PREFIX}{name or order}"
     return FormField(name=name, kind="button", label=label, act=act, asks=asks, tone=tone)
 
 

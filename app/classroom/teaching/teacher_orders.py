@@ -35,6 +35,7 @@ from onpath.lessons.votes import Vote
 from onpath.lessons.words import Words
 
 COUNT_DOWN = 5.0  # [s] in which a vote is closed
+TIMER = 60.0  # [s] that the timer gives
 
 
 class TeacherOrders:
@@ -73,6 +74,7 @@ class TeacherOrders:
         self._of_switches: Mapping[str, Callable[[Any], object]] = {
             "shown": self._show_answers,
             "revealed": self._reveal,
+            "peeks": self._peek,
             "large": lambda on: post(Set("presenting", on)),
         }
         room = self._class
@@ -85,6 +87,7 @@ class TeacherOrders:
             "back": lambda _: self._lead(-1),
             "next": lambda _: self._lead(1),
             "close_votes": lambda _: self._close(),
+            "timer": lambda _: self._close(TIMER),
             "open_votes": lambda _: room.open_again(self._votes),
             "ask_again": self._ask_again,
             "play": self._play,
@@ -102,6 +105,8 @@ class TeacherOrders:
             "record": self._bring_record,
             "end": self._end,
             "forget": self._forget,
+            "let_in": room.let_in,
+            "throw_out": room.throw_out,
         }
 
     def set(self, name: str, value: FieldValue) -> None:
@@ -169,14 +174,17 @@ class TeacherOrders:
         lesson = self._course.lesson(name, self._words.language)
         return votes_at(lesson, index, self._class.votes)
 
-    def _close(self) -> float:
+    def _peek(self, on: bool) -> None:
+        self._chosen.peeks = on
+
+    def _close(self, wait: float = COUNT_DOWN) -> float:
         """Close the votes of the displayed step, and return when they are closed.
 
         A count-down lets students finish, unless all who are here have answered.
         """
         room, votes = self._class, self._votes
         here = [each.progress for each in room.present().values() if each.connected]
-        wait = 0.0 if have_all_answered(here, votes) else COUNT_DOWN
+        wait = 0.0 if have_all_answered(here, votes) else wait
         room.close([each for each in votes if each.closes is None], wait)
         return max([each.closes or 0.0 for each in self._votes], default=0.0)
 

@@ -11,7 +11,7 @@ import { RemoteSettings } from "./settings"
 import {
     PROTOCOL, type Ask, type ClassMessage, type Command, type Compared, type CompareSheet, type DisplaySheet, type FrameMessage, type Hello, type HelpSheet, type Index, type KeepSheet,
     type LabMessage, type LawSheet, type LessonMessage, type LessonSheet, type Light, type MeasuredMessage, type PageMessage, type PathMessage,
-    type RobotSheet, type SeatAnswer, type StateMessage, type Told, type WallMessage, type WordsMessage,
+    type RobotSheet, type SeatAnswer, type StateMessage, type RemoteMessage, type Told, type WallMessage, type WordsMessage,
 } from "./messages"
 
 const SECONDS = 60 // [s] of samples that are kept
@@ -161,6 +161,8 @@ export class RemoteEngine implements Engine {
     measured: MeasuredMessage | null = null
     /** What a class's wall shows besides the robots; null until it is known, and on other pages. */
     wall: WallMessage | null = null
+    /** What a class's remote control is told besides its form; null until it is known, and on other pages. */
+    remote: RemoteMessage | null = null
     /** The lab's place in a class; null until it is known. */
     seat: ClassMessage | null = null
     /** Whether the page has offered to join the class. */
@@ -186,8 +188,8 @@ export class RemoteEngine implements Engine {
     private readonly news = new Set<(news: News) => void>()
     private readonly listeners = new Set<(change: Change) => void>()
 
-    /** How the page is drawn: dark, in software, in an upright window. `asks`: else it is told all that it shows unasked. */
-    constructor(private readonly drawn: () => { dark: boolean; plain: boolean; upright: boolean }, private readonly asks = true) {}
+    /** How the page is drawn: dark, in software, in an upright window. `shows`: a class's wall asks for nothing, and its remote control shows no lab. */
+    constructor(private readonly drawn: () => { dark: boolean; plain: boolean; upright: boolean }, private readonly shows: "lab" | "wall" | "remote" = "lab") {}
 
     /** Have the lab tell its form and the values of its fields. */
     askForm(): void {
@@ -206,7 +208,7 @@ export class RemoteEngine implements Engine {
     get isOpen(): boolean { return this.socket?.readyState === WebSocket.OPEN }
 
     /** Whether there is something to show. */
-    get ready(): boolean { return this.words !== null && this.lab !== null && this.samples.length > 0 }
+    get ready(): boolean { return this.words !== null && (this.shows === "remote" ? this.remote !== null : this.lab !== null && this.samples.length > 0) }
 
     /** Connect, unless it is connected, or was a moment ago; called repeatedly. */
     open(): void {
@@ -223,7 +225,7 @@ export class RemoteEngine implements Engine {
     }
 
     private get greeting(): Hello {
-        const { page } = this, [labs, teacher, speaks, sounds, first_minute] = this.asks ? KEPT.map(kept) : []
+        const { page } = this, [labs, teacher, speaks, sounds, first_minute] = this.shows === "wall" ? [] : KEPT.map(kept)
         return { is: "hello", page, site: siteOf(location), ...this.drawn(), labs, teacher, speaks, sounds, first_minute }
     }
 
@@ -305,7 +307,7 @@ export class RemoteEngine implements Engine {
 
     /** Without a picture of the robots, their bars are asked for, too. */
     private askLines(): void {
-        if (!this.asks) return
+        if (this.shows === "wall") return
         const asked = AT_JOINTS.find(each => each === this.pointed) ?? (this.lab?.drawn === false ? "bars" : "")
         if (asked === this.symbol) return
         this.symbol = asked
@@ -411,6 +413,9 @@ export class RemoteEngine implements Engine {
             this.tell("class")
         } else if (message.is === "wall") {
             this.wall = message
+            this.tell("class")
+        } else if (message.is === "remote") {
+            this.remote = message
             this.tell("class")
         } else if (message.is === "store") keep(message.key, message.value)
         else if (message.is === "refused") console.warn(`refused: ${message.why}`)

@@ -37,7 +37,7 @@ export function keepLab(code: string): void {
 
 /** Where this site is, without the page's place in it. */
 export function siteOf({ origin, pathname }: { origin: string; pathname: string }): string {
-    return origin + pathname.replace(/(\/[cl]\/[a-z0-9]{1,32}(\/wall)?)?\/?(index\.html)?$/, "")
+    return origin + pathname.replace(/(\/[cl]\/[a-z0-9]{1,32}(\/(wall|remote))?)?\/?(index\.html)?$/, "")
 }
 
 /** Let viser's page, when the lab asks it, say which page it belongs to. The answer is this page's alone: it is neither

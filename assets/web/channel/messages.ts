@@ -203,8 +203,8 @@ export interface MakeFile {
 /** An order of a teacher to the class; refused from any other page. */
 export interface Lead {
     is: "lead"
-    do: "ask_again" | "back" | "close_votes" | "delete" | "end" | "end_standing" | "forget" | "freeze" | "give_place" | "keep" | "keep_apart" | "let_go" | "next" | "open_votes" | "own_lab" | "play" | "put_back" | "record" | "remove" | "send_route" | "send_setup" | "send_step" | "set_aside" | "stop" | "thaw"
-    /** number of the student whom it concerns. */
+    do: "ask_again" | "back" | "close_votes" | "delete" | "end" | "end_standing" | "forget" | "freeze" | "give_place" | "keep" | "keep_apart" | "let_go" | "let_in" | "next" | "open_votes" | "own_lab" | "play" | "put_back" | "record" | "remove" | "send_route" | "send_setup" | "send_step" | "set_aside" | "stop" | "thaw" | "throw_out" | "timer"
+    /** number of the student whom it concerns, or of the phone. */
     member?: number
 }
 
@@ -914,6 +914,17 @@ export interface WallMessage {
     note: string
 }
 
+/** What a remote control is told besides the form of the class, whenever it changes. */
+export interface RemoteMessage {
+    is: "remote"
+    /** that it shows until it is let in; empty once it is. */
+    number: string
+    /** what to do with the number. */
+    text: string
+    /** whether a vote is open, so that the phone is to stay awake. */
+    votes: boolean
+}
+
 /** A message with only the fields that have changed. */
 export type Changes<Message extends { is: string }> = Pick<Message, "is"> & Partial<Message>
 
@@ -949,3 +960,4 @@ export type LabMessage =
     | ClassMessage
     | SeatAnswer
     | WallMessage
+    | RemoteMessage

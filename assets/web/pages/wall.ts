@@ -73,7 +73,7 @@ class Wall {
     }
 }
 
-const engine = new RemoteEngine(() => ({ dark: false, plain: true, upright: false }), false)
+const engine = new RemoteEngine(() => ({ dark: false, plain: true, upright: false }), "wall")
 const connection = new Connection(engine, null)
 let wall: Wall | null = null
 const follow = () => {

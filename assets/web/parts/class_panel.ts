@@ -13,11 +13,12 @@ export class ClassPanel {
     private chosen = ""
     private large: boolean | null = null
 
-    constructor(texts: Texts, private readonly form: Form) {
+    /** `folded`: nothing but the first group is seen until a tab is pressed, and when it is pressed again. */
+    constructor(texts: Texts, private readonly form: Form, private readonly folded = false) {
         this.tabs.role = "tablist"
         this.tabs.ariaLabel = phrase(texts, "class.title")
         this.tabs.addEventListener("keydown", event => this.turn(event))
-        this.element = made("section", "class", this.tabs, form.element)
+        this.element = made("section", "class", ...(folded ? [form.element, this.tabs] : [this.tabs, form.element]))
         this.element.ariaLabel = phrase(texts, "class.title")
     }
 
@@ -25,7 +26,7 @@ export class ClassPanel {
     show({ groups }: FormMessage, large: boolean): void {
         const { form, buttons, tabs } = this, [, ...others] = groups
         for (const { name, title } of others) {
-            const button = buttons.get(name) ?? pressed("", title, () => this.choose(name))
+            const button = buttons.get(name) ?? pressed("", title, () => this.choose(this.folded && this.chosen === name ? "" : name))
             if (!buttons.has(name)) {
                 button.role = "tab"
                 button.id = `op-tab-${name}`
@@ -41,7 +42,7 @@ export class ClassPanel {
         }
         const told = form.row("class.told")
         if (told) told.element.role = "status"
-        if (large !== this.large) this.chosen = others[large ? 1 : 0]!.name
+        if (large !== this.large && !this.folded) this.chosen = others[large ? 1 : 0]!.name
         this.large = large
         this.choose(this.chosen)
     }
@@ -51,7 +52,7 @@ export class ClassPanel {
         for (const [each, button] of this.buttons) {
             const isChosen = each === name
             button.ariaSelected = String(isChosen)
-            button.tabIndex = isChosen ? 0 : -1
+            button.tabIndex = isChosen || !this.chosen ? 0 : -1
             const part = this.form.part(each)
             if (part) part.hidden = !isChosen
         }

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from onpath.app.channel.class_messages import Lead
@@ -377,3 +377,35 @@ def test_who_is_set_aside_is_neither_counted_nor_lost_and_is_back_on_coming(
     here.add("Cem")
     sync.check()
     assert list(lecture.room.present()) == ["Ada", "Cem"]
+
+
+@given(st.lists(st.sampled_from([None, 0, 1]), min_size=1, max_size=20))
+@settings(max_examples=20, deadline=None)
+def test_dots_and_proposal_follow_from_the_answers(
+    course: Course, options: list[int | None]
+) -> None:
+    lecture = Lecture(course)
+    for number, _ in enumerate(options):
+        lecture.come(f"S{number}")
+    lecture.send(CHOICE)
+    for state, option in zip(lecture.labs.values(), options, strict=True):
+        if option is not None:
+            state.note_answer(Answer(option=option))
+    lecture.view()
+    assert lecture.answers.proposal() == ""  # while the vote is open
+    lecture.lead("close_votes")
+    lecture.clock.time += COUNT_DOWN + 0.1
+    block = course.lesson(LESSON, "en").steps[CHOICE].predictions()[0]
+    assert isinstance(block, Choice)
+    given = [option for option in options if option is not None]
+    right = sum(block.options[option].right for option in given)
+    for key, count in (("right", right), ("answered", len(given) - right)):
+        assert (ENGLISH(f"class.dots_{key}", count=count) in lecture.answers.dots()) == bool(count)
+    assert lecture.answers.dots().count("border-radius:50%") == len(options)
+    told = lecture.answers.proposal()
+    if not given:
+        assert told == ""
+        return
+    share = right / len(given)
+    wanted = "explain" if share < 0.3 else "discuss" if share <= 0.7 else "go_on"
+    assert told == ENGLISH(f"class.proposal_{wanted}", percent=round(100 * share))

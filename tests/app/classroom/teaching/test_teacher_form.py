@@ -41,7 +41,7 @@ class Desk:
         self.room, self.posted = Classroom(lambda: 0.0), list[Command]()
         self.files = dict[str, bytes]()
         self.calls, self.progress = list[str](), Progress(language=language)
-        self.presents = False
+        self.presents, self.has_lab = False, True
         for code, name in ((FIRST, HOSTILE), (SECOND, "Bob")):
             self.room.join(code, self.room.code, name)
         words = Words(language)
@@ -51,6 +51,7 @@ class Desk:
             may_lead=lambda: True,
             address="http://192.0.2.7:8080/c/m63eyz/",
             is_local=False,
+            has_lab=self.has_lab,
             progress=lambda: self.progress,
             presents=lambda: self.presents,
             why_still=lambda _: "",
