@@ -57,7 +57,7 @@ thorough: $(TOOLS)
 	$(PYTEST) -n 0 -m soak tests/bench $(ARGS)
 
 pages: $(TOOLS)
-	$(PYTEST) -m thorough tests/in_browser $(ARGS)
+	$(PYTEST) -m thorough -o timeout=1800 -o faulthandler_timeout=3600 tests/in_browser $(ARGS)
 
 fuzz: $(TOOLS)
 	$(PYTEST) -m hypothesis --hypothesis-profile fuzz $(ARGS)
