@@ -104,7 +104,7 @@ export class Figure {
             return made("section", "robot", heading, made("div", "seen", view.canvas, this.lenses[i]!.element))
         })
         const strip = data.controls.includes("plot") ? [this.strip.element] : []
-        if (strip.length) transport.element.append(this.strip.menu.element)
+        if (strip.length) transport.add(this.strip.menu.element)
         return [
             made("div", "scene", made("div", "robots", ...robots), this.brakes),
             this.note,

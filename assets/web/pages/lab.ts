@@ -74,7 +74,7 @@ class Face {
         this.stage = new OverStage(engine, texts, this.overlay.element, this.sketch.element)
         Object.assign(this.undo, { type: "button", textContent: phrase(texts, "past.undo"), title: phrase(texts, "past.undo_hint") })
         this.undo.addEventListener("click", () => engine.send({ do: "UndoGoOn" }))
-        this.transport.element.append(this.undo, this.strip.menu.element, this.transport.step)
+        this.transport.add(this.undo, this.strip.menu.element)
         const head = made("div", "head", this.transport.element, this.clock)
         this.column = new Column(texts, engine, () => true, symbol => this.light(symbol), signal)
         this.element = made("section", "", head, made("div", "numbers", ...this.readings), this.strip.element, this.column.beneath)

@@ -11,8 +11,7 @@ export class Transport {
     readonly element: HTMLElement
     /** The brake; while one looks at the past, the buttons of the past stand in its place. */
     readonly brake: HTMLElement
-    /** The button for one step, which is there while time stands still. */
-    readonly step: HTMLButtonElement
+    private readonly step: HTMLButtonElement // there while time stands still, so it is the last one
     private readonly held: HTMLButtonElement
     private readonly run: HTMLButtonElement
     private readonly rate: HTMLSelectElement
@@ -36,11 +35,11 @@ export class Transport {
         this.step = this.button("step", ["run.step"], "key.right", () => this.engine.act({ do: "step" }))
         const every: Record<string, HTMLElement[]> = {
             run: [this.run],
-            step: [this.step],
             reset: [this.button("", ["run.reset"], "key.reset", () => this.engine.act({ do: "reset" }))],
         }
         const buttons = Object.keys(every).filter(name => offered.includes(name)).flatMap(name => every[name]!)
         if (offered.includes("run")) buttons.push(this.rate)
+        if (offered.includes("step")) buttons.push(this.step)
         this.goes = this.button("", ["past.go_on"], "transport.go_on_hint", () => this.engine.act({ do: "goOn" }))
         const back = this.button("", ["transport.back"], "transport.back_hint", () => this.engine.act({ do: "seek", at: null }))
         this.past = made("div", "past", back, this.goes)
@@ -58,6 +57,12 @@ export class Transport {
     /** Whether one is asked to hold the robots back, or to let them go. */
     set invited(invited: boolean) {
         this.held.classList.toggle("invited", invited)
+    }
+
+    /** Put further buttons after its own. */
+    add(...buttons: HTMLElement[]): void {
+        if (this.step.parentElement) this.step.before(...buttons)
+        else this.element.append(...buttons)
     }
 
     toggleHold(): void {
