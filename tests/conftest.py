@@ -30,16 +30,20 @@ MOST_REPEATED = 5
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    parser.addoption("--half", action="store_true", help="run half of the tests, others every day")
+    parser.addoption("--half", action="store_true", help="half of the thorough tests, others daily")
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leave out what `--half` does not run today."""
+    """Leave out the thorough tests that `--half` does not run today."""
     if config.getoption("--half"):
         today = date.today().isoformat()
-        left_out = [item for item in items if crc32(f"{today} {item.nodeid}".encode()) % 2]
-        config.hook.pytest_deselected(items=left_out)
-        items[:] = [item for item in items if item not in set(left_out)]
+
+        def left_out(item: pytest.Item) -> bool:
+            drawn = crc32(f"{today} {item.nodeid}".encode()) % 2 == 0
+            return item.get_closest_marker("thorough") is not None and not drawn
+
+        config.hook.pytest_deselected(items=list(filter(left_out, items)))
+        items[:] = [item for item in items if not left_out(item)]
 
 
 def pytest_sessionfinish(session: pytest.Session) -> None:
