@@ -19,7 +19,9 @@ from onpath.app.common.atomic_file import check_file, check_plot, whole_file
 from onpath.app.exports.summary_text import finite, summary_lines
 
 if TYPE_CHECKING:
+    from onpath.models.closed_loop.trajectory import Trajectory
     from onpath.models.robot_files.guesses import Guess
+    from onpath.models.studies.experiments import Experiment
 
 
 @dataclass(frozen=True)
@@ -50,6 +52,12 @@ class ExperimentCommand:
     ones if sensors are not exact."""
     plot: Path | None = None
     """Draw the paper's figures to this .png, .svg or .pdf file."""
+    log: Path | None = None
+    """Draw the log of a real arm with --plot, on the axes of the runs; a file as for identify."""
+    column: Repeated = ()
+    """A column of the log, as for identify; repeat for more."""
+    unit: Repeated = ()
+    """Unit of a column of the log, as for identify; repeat for more."""
     json: bool = False
     """Print a summary as JSON."""
     file_options: FileOptions = NO_OPTIONS
@@ -92,6 +100,7 @@ class ExperimentCommand:
         for text in (remark, unused_text(chosen, laws, given), forecast_text(chosen, laws)):
             if text:
                 print(f"onpath: {text}", file=sys.stderr)
+        logged = self._logged(chosen)
         runs = [run(chosen, name) for name in laws]
         result = summary(chosen, runs)
         if self.csv:
@@ -102,7 +111,7 @@ class ExperimentCommand:
                 write_csv(file, chosen.robot(), runs, guesses=chosen.entry.guesses)
         if self.plot:
             with whole_file(self.plot) as scratch:
-                draw_experiment(chosen, runs, scratch)
+                draw_experiment(chosen, runs + logged, scratch)
         for each in runs:
             if text := beyond_limits(each, chosen.robot()):
                 print(f"onpath: {law_title(each.law)}: {text}", file=sys.stderr)
@@ -111,6 +120,19 @@ class ExperimentCommand:
             print(json.dumps(finite(result), indent=2))
         else:
             print(_table(result, reasons, chosen.entry.guesses))
+
+    def _logged(self, experiment: Experiment) -> list[Trajectory]:
+        """What is drawn of the log."""
+        from onpath.app.common.user_files import user_file
+        from onpath.models.studies.log_motion import read_motions
+
+        if self.log is None:
+            return []
+        if self.plot is None:
+            raise ValueError("--log is drawn beside the runs: add --plot and a file")
+        columns = assignments(self.column, "--column")
+        units = assignments(self.unit, "--unit")
+        return read_motions(user_file(self.log), experiment, columns, units)
 
 
 @dataclass(frozen=True)

@@ -11,11 +11,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from onpath.app.common.palette import Colour, of_law
+from onpath.app.common.palette import INK, Colour, of_law
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.closed_loop.trajectory import Trajectory
 from onpath.models.robot_files.guesses import Guess
 from onpath.models.studies.experiments import Experiment
+from onpath.models.studies.log_motion import LOG
 from onpath.models.systems.guessed_numbers import with_mark
 
 EXTRA = {"deflection": ("deflection of\nthe tip  [mm]", 1e3)}
@@ -57,7 +58,7 @@ def experiment_figure(experiment: Experiment, runs: list[Trajectory]) -> Figure:
     _draw_space(axes["space"], experiment, runs)
     for name, label, column in panels:
         for run in runs:
-            draw_column(axes[name], run, of_law(run.law), *column(run))
+            draw_column(axes[name], run, _colour(run), *column(run))
         axes[name].set_ylabel(label)
         axes[name].grid(alpha=0.25)
         _shade_held(axes[name], runs)
@@ -137,6 +138,10 @@ def _wrapped(theta: np.ndarray) -> np.ndarray:
     return wrapped
 
 
+def _colour(run: Trajectory) -> Colour:
+    return INK if run.law == LOG else of_law(run.law)
+
+
 def draw_column(axes: Axes, run: Trajectory, colour: Colour, values: np.ndarray) -> None:
     """Plot the columns of values, shape (n, k), each in the style of `STYLES`."""
     for column, style in zip(values.T, STYLES, strict=False):
@@ -163,12 +168,12 @@ def _draw_space(axes: Axes, experiment: Experiment, runs: list[Trajectory]) -> N
         z = 1e3 * frame.planar(run.fields["y"])
         axes.plot(
             *z.T,
-            color=of_law(run.law).hex,
+            color=_colour(run).hex,
             linewidth=1.6,
             label=run.label,
         )
-        axes.plot(*z[0], "o", color=of_law(run.law).hex, markersize=6)
-        axes.plot(*z[-1], "s", color=of_law(run.law).hex, markersize=7)
+        axes.plot(*z[0], "o", color=_colour(run).hex, markersize=6)
+        axes.plot(*z[-1], "s", color=_colour(run).hex, markersize=7)
     axes.plot([], [], "o", color="0.3", label="start")
     axes.plot([], [], "s", color="0.3", label="end")
     if any(run.held.any() for run in runs):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from onpath.app.common.atomic_file import check_plot, check_writable, whole_file
+from onpath.app.common.user_files import user_file
 from onpath.app.exports.summary_text import summary_lines
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.trajectory import (
@@ -163,18 +164,30 @@ class Run:
         """
         return summary(self.experiment, [self.trajectory])["laws"][self.law]
 
-    def plot(self, *others: Run | str | Path, file: str | Path | None = None) -> Figure:
+    def plot(
+        self,
+        *others: Run | str | Path,
+        file: str | Path | None = None,
+        log: str | Path | None = None,
+        columns: Mapping[str, str | int] | None = None,
+        units: Mapping[str, str | float] | None = None,
+    ) -> Figure:
         """Plot the end-point and path, and distance, xi, theta, its rate and torque over time.
 
         Args:
             others: runs of the same robot and path, drawn in the same picture; and the file, as in
                 `run.plot("held.png")` and `run.plot(other, "held.png")`.
             file: the file to write, with a name ending in .png, .svg or .pdf.
+            log: what a real arm has logged, drawn on the same axes from its beginning on.
+            columns, units: of the log, as for `onpath.identify`.
 
         Raises:
-            ValueError: another robot or path, two files, or a file that cannot be written.
+            ValueError: another robot or path, two files, a file that cannot be written, or a log
+                that is refused.
+            OSError: the log cannot be read.
         """
         from onpath.app.exports.figures import experiment_figure  # slow to import
+        from onpath.models.studies.log_motion import read_motions
 
         files = [each for each in (*others, file) if isinstance(each, str | Path)]
         if len(files) > 1:
@@ -182,7 +195,10 @@ class Run:
         file = files[0] if files else None
         check_plot(None if file is None else Path(file).expanduser(), "plot")
         runs = tuple(each for each in others if not isinstance(each, str | Path))
-        return written(experiment_figure(self.experiment, self._with(runs)), file)
+        shown = self._with(runs)
+        if log is not None:
+            shown += read_motions(user_file(log), self.experiment, columns or {}, units or {})
+        return written(experiment_figure(self.experiment, shown), file)
 
     def to_csv(self, file: str | Path, *others: Run) -> None:
         """Write one row per millisecond and run, as `onpath experiment --csv` does.
