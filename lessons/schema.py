@@ -198,7 +198,9 @@ class Derivation(Data, frozen=True):
     question: str
     line: tuple[DerivedLine, ...]
     answer: str
-    names: dict[str, tuple[float, float]] = msgspec.field(default_factory=dict)
+    names: dict[str, tuple[float, float]] = msgspec.field(
+        default_factory=dict[str, tuple[float, float]]
+    )
 
 
 class LabLink(msgspec.Struct, frozen=True):

@@ -96,7 +96,7 @@ def evaluated(formula: Formula, values: Mapping[str, Array], count: int) -> Arra
     values = {**values, "pi": np.full(count, np.pi)}
     with np.errstate(all="ignore"):
         for item in formula:
-            if isinstance(item, float):
+            if isinstance(item, float | int):
                 stack.append(np.full(count, item))
             elif item in values:
                 stack.append(values[item])

@@ -112,7 +112,7 @@ def tip(of: Symbols) -> list[ca.SX]:
 
     def bend(place: ca.SX, at: float) -> ca.SX:
         half = ca.sumsqr(place - curve) / 2
-        return ca.substitute(ca.hessian(half, theta)[0], theta, at)
+        return ca.substitute(ca.jacobian(ca.jacobian(half, theta), theta), theta, at)
 
     def border(place: ca.SX, at: float) -> ca.SX:
         found = bend(place, at)  # is linear in the depth
@@ -137,7 +137,7 @@ def mixed(of: Symbols) -> list[ca.SX]:
 
     def term(mass: ca.SX, place: ca.SX) -> ca.SX:
         energy = mass / 2 * ca.sumsqr(ca.jacobian(place, angles) @ rates)
-        return ca.substitute(ca.hessian(energy, rates)[0][0, 1], angles, q)
+        return ca.substitute(ca.jacobian(ca.jacobian(energy, rates).T, rates)[0, 1], angles, q)
 
     third = term(of["m3"], of["l2"] * two + of["c3"] * one)
     fourth = term(of["m4"], of["l1"] * one - of["c4"] * two)

@@ -10,11 +10,16 @@ import { readFormula, Refused } from "../lessons/typed"
 
 /** Make a derivation answerable. Returns what shows what has become of it. */
 export function derive(page: PageData, element: HTMLElement, data: DerivationData, key: string, student: Student): () => void {
+    const [step, place] = key.split(".").map(Number)
+    const states = (): LineState[] => { // a lab tells them anew after each answer
+        const block = page.steps[step!]!.blocks[place!]!
+        return statesOf(block.kind === "derivation" ? block : data, student.notes.written[key] ?? "")
+    }
     const lines = [...element.querySelectorAll<HTMLElement>("[data-line]")]
     const after = element.querySelector<HTMLDetailsElement>(":scope > .after")
     const told = element.querySelector<HTMLElement>(":scope > .verdict")!
     const name = `${page.lesson} ${key}`
-    const open = () => statesOf(data, student.notes.written[key] ?? "").findIndex(state => !state.closed)
+    const open = () => states().findIndex(state => !state.closed)
     const inputs = lines.map((line, i) => {
         const input = line.querySelector("input")!
         const button = made("button", "script-only", phrase(page, "answer.check"))
@@ -43,13 +48,12 @@ export function derive(page: PageData, element: HTMLElement, data: DerivationDat
     const show = () => {
         const isSending = student.way(key) === "sending"
         told.textContent = isSending ? phrase(page, "answer.sending") : ""
-        const states = statesOf(data, student.notes.written[key] ?? "")
-        const now = JSON.stringify(states)
+        const found = states(), now = JSON.stringify(found)
         if (now === shown) return
         shown = now
         const first = open()
         lines.forEach((line, i) => {
-            const state = states[i]!
+            const state = found[i]!
             line.hidden = first >= 0 && i > first
             const typing = line.querySelector<HTMLElement>("p.script-only")!
             const reads = typing.contains(document.activeElement)

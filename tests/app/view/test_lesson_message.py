@@ -25,11 +25,21 @@ from onpath.app.view.lesson_view import LessonView
 from onpath.app.view.step_navigation import RECORD
 from onpath.lessons.concept_test.concept_test import AFTER, BEFORE
 from onpath.lessons.progress import Answer, Truth
-from onpath.lessons.schema import KINDS, Choice, NumberQuestion, OpenQuestion, Quiz, Sketch, Step
+from onpath.lessons.schema import (
+    KINDS,
+    Choice,
+    Derivation,
+    NumberQuestion,
+    OpenQuestion,
+    Quiz,
+    Sketch,
+    Step,
+)
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
 from tests.support.built_in import built_in_course
 from tests.support.lab import do, loop_cache, run
+from tests.support.pupil import expanded
 
 COURSE = built_in_course()[0]
 STEPS = [
@@ -170,6 +180,25 @@ def test_a_number_is_judged_once_it_is_answered(lab: Lab) -> None:
             answers = [int(i) for i in re.findall(r'data-answer="(.)"', html(message))]
             replies = [known.index(number)] if number in known else []
             assert answers == ([*range(len(known))] if is_told else replies)
+
+
+def test_a_known_mistake_of_a_line_is_replied_to(lab: Lab) -> None:
+    """By its own answer alone, and the line is told once it is closed."""
+    do(lab, c.SetLanguage("en"))
+    for name, index, place in places(Derivation):
+        at(lab, name, index)
+        block = step_of(lab).blocks[place]
+        assert isinstance(block, Derivation)
+        for number in range(len(block.line[0].wrong)):
+            typed = [expanded(block, 0, block.line[0].wrong[number].formula)]
+            for rows in (typed, [*typed, expanded(block, 0)]):
+                at(lab, name, index, written={f"{index}.{place}": "\n".join(rows)})
+                told_now = told(lab)
+                state, *_ = told_now["steps"][index]["blocks"][place]["states"]
+                assert state["closed"] == (len(rows) == 2)
+                found = html(told_now).split(f'data-block="{place}"')[1].split("</ol>")[0]
+                assert re.findall(r'data-answer="(.)"', found) == [str(number)]
+                assert ('class="after"' in found) == state["closed"]
 
 
 def test_a_text_is_kept_and_the_model_answer_is_told(lab: Lab) -> None:

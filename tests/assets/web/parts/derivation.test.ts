@@ -21,7 +21,12 @@ function page(data = DATA) {
     const notes = noNotes()
     const derives = (key: string, row: string) => (notes.written[key] = [notes.written[key], row].filter(Boolean).join("\n"))
     const student = { notes, name: "", derives, way: () => "" } as unknown as Student
-    derive({ words: TEXTS.words, lesson: "a" } as unknown as PageData, element, data, "0.0", student)
+    const told = { words: TEXTS.words, lesson: "a", steps: [{ blocks: [data] }] } as unknown as PageData
+    const show = derive(told, element, data, "0.0", student)
+    const hears = (block: DerivationData) => {
+        told.steps[0]!.blocks[0] = block
+        show()
+    }
     const lines = [...element.querySelectorAll<HTMLElement>("li")]
     const type = (i: number, row: string) => {
         lines[i]!.querySelector("input")!.value = row
@@ -29,7 +34,7 @@ function page(data = DATA) {
         return lines[i]!.querySelector(".told")!.textContent
     }
     const shown = () => [...lines, ...element.querySelectorAll<HTMLElement>("details")].map(each => !each.hidden)
-    return { notes, type, shown }
+    return { notes, type, shown, hears, said: () => lines[0]!.querySelector(".told")!.textContent }
 }
 
 test("a wrong line is answered by name, a second one closes it, and an own value is carried on", () => {
@@ -56,6 +61,9 @@ test("what cannot be read is marked at its place, and kept nowhere", () => {
 
 test("a lab says itself what has become of each line", () => {
     const states = [{ tries: [{ typed: "K1", verdict: "wrong" as const, known: 0 }], closed: false }, { tries: [], closed: false }]
-    const { shown } = page({ kind: "derivation", known: DATA.known, states })
+    const { shown, hears, said } = page({ kind: "derivation", known: DATA.known, states })
     assert.deepEqual(shown(), [true, false, false, false, false])
+    hears({ kind: "derivation", known: DATA.known, states: [{ tries: [{ typed: "K1", verdict: "right", known: null }], closed: true }, states[1]!] })
+    assert.deepEqual(shown(), [true, true, true, false, false])
+    assert.ok(said().includes("lesson.right"))
 })
