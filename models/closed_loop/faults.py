@@ -142,7 +142,8 @@ def _large_error(law: str, last: dict[str, Array], curve: Curve) -> list[Message
     reference, theta = last["theta_ref"][:, 0], last["theta"][:, 0]
     away = np.abs(curve.arc(reference) - curve.arc(theta))
     at = int(away.argmax())
-    bend = np.abs(curve.curvature(np.linspace(theta[at], reference[at], BETWEEN))).max()
+    way: Array = np.linspace(float(theta[at]), float(reference[at]), BETWEEN)
+    bend = np.abs(curve.curvature(way)).max()
     if away[at] * bend < AWAY:
         return []
     return [Message("cause.small_errors", {"away": f"{1e3 * away[at]:.0f}"})]

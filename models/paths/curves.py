@@ -177,8 +177,9 @@ class Curve(ABC):
             turns = np.floor((theta + np.pi) / PERIOD)
             return np.interp(theta - PERIOD * turns, even, s) + turns * s[-1]
         ends = np.linalg.norm(self.at(even[[0, -1]], 1), axis=-1)
-        past = np.where(theta > 0, ends[1], ends[0]) * (theta - np.clip(theta, -np.pi, np.pi))
-        return np.interp(theta, even, s) + past
+        speed: Array = np.where(theta > 0, float(ends[1]), float(ends[0]))
+        inner: Array = np.clip(theta, -np.pi, np.pi)
+        return np.interp(theta, even, s) + (theta - inner) * speed
 
     def length(self) -> float:
         """Arc length ∫ |σ'| dθ over [-π, π], [m], from 4 `grid` samples.

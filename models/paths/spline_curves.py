@@ -116,7 +116,8 @@ class SplineCurve(Curve):
         for begin, end in ends.reshape(-1, 2):
             if begin < end:
                 count = 2 + int((end - begin) / PERIOD * 2 * self.grid)
-                found.append(self.at(np.linspace(begin, end, count)))
+                theta: Array = np.linspace(float(begin), float(end), count)
+                found.append(self.at(theta))
         return found
 
     def _inner(self, theta: Array) -> Array:

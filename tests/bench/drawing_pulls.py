@@ -7,6 +7,7 @@ on a leaf and on ten signatures. It takes an hour of processor time.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import tyro
@@ -27,13 +28,16 @@ SIGNATURES, COUNT, SEED = 10, 34, 2026  # COUNT pulls of a robot on a drawing at
 
 def drawings(files: tuple[Path, ...]) -> list[Callable[[float], Curve]]:
     """Makers of the drawings of a size, [m]."""
-    of_files = [
-        lambda size, file=file: path_in(file, Placing(fit=size, centre=(0.0, 0.0))).curve
-        for file in (FILE, *files)
-    ]
-    return of_files + [
-        lambda size, seed=seed: drawn(signature(seed, size)).curve for seed in range(SIGNATURES)
-    ]
+    of_files = [partial(_of_file, file) for file in (FILE, *files)]
+    return of_files + [partial(_signed, seed) for seed in range(SIGNATURES)]
+
+
+def _of_file(file: Path, size: float) -> Curve:
+    return path_in(file, Placing(fit=size, centre=(0.0, 0.0))).curve
+
+
+def _signed(seed: int, size: float) -> Curve:
+    return drawn(signature(seed, size)).curve
 
 
 def pulled(robot: str, rate: int, made: Callable[[float], Curve], seed: int) -> list[Result]:

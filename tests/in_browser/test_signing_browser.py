@@ -21,7 +21,7 @@ from tests.support.browser import Tab, wait_for
 
 pytestmark = pytest.mark.thorough
 TIMETABLE = "01-path-or-timetable"
-T = np.linspace(0, 1, 60)
+T = np.linspace(0, 1, 40)
 NAME = np.stack([0.1 * T - 0.05 + 0.012 * np.sin(8 * np.pi * T), -0.02 * np.cos(8 * np.pi * T)]).T
 """A joined-up word of four loops, [m]."""
 
@@ -40,7 +40,7 @@ def test_a_name_is_written_by_hand_and_twice_by_robots(
     tab.settle()
     tab.press("Draw")
     tab.settle()
-    places = [tab.placed("left", z) for z in NAME]
+    places = tab.line("left", NAME)
     write: Callable[..., AbstractContextManager[object]]
     write = tab.dragging if hand == "mouse" else tab.touching
     with write(*places, in_scene=False):

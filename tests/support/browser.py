@@ -239,16 +239,19 @@ class Tab:
 
     def pixel(self, name: str, point: np.ndarray) -> tuple[float, float]:
         """Position in the window of a point of a robot's frame, shape (3,), [m]."""
+        return self._pixels(name, point[None])[0]
+
+    def _pixels(self, name: str, points: np.ndarray) -> list[tuple[float, float]]:
         camera, box = self.client.camera, self._canvas()
         forward = camera.look_at - camera.position
         forward = forward / np.linalg.norm(forward)
         right = np.cross(forward, [0.0, 0.0, 1.0])
         right /= np.linalg.norm(right)
-        seen = point + stage_of(self.simulation.robot).bases[name] - camera.position
+        seen = points + stage_of(self.simulation.robot).bases[name] - camera.position
         depth, scale = seen @ forward, box["height"] / 2 / np.tan(camera.fov / 2)
         x = box["width"] / 2 + scale * (seen @ right) / depth
         y = box["height"] / 2 - scale * (seen @ np.cross(right, forward)) / depth
-        return float(box["x"] + x), float(box["y"] + y)
+        return [(box["x"] + a, box["y"] + b) for a, b in zip(x.tolist(), y.tolist(), strict=True)]
 
     def _canvas(self) -> dict[str, float]:
         """Position and size of the scene in the window, [px]."""
@@ -260,6 +263,11 @@ class Tab:
         """Position in the window of a point of the path's plane, shape (2,), [m]."""
         robot = self.simulation.robot
         return self.pixel(name, robot.position(robot.frame.lift(np.asarray(z, dtype=float))))
+
+    def line(self, name: str, z: np.ndarray) -> list[tuple[float, float]]:
+        """Positions in the window of points of the path's plane, shape (n, 2), [m]."""
+        robot = self.simulation.robot
+        return self._pixels(name, robot.position(robot.frame.lift(z)))
 
     def tip(self, name: str) -> np.ndarray:
         """Position of the end-point in the path's plane, shape (2,), [m]."""

@@ -68,6 +68,12 @@ def test_closest_points_and_lengths_are_those_of_dense_points(
     dense = curve.at(np.linspace(-np.pi, np.pi, 200 * curve.pieces + 1))
     line = float(np.linalg.norm(np.diff(dense, axis=0), axis=1).sum())
     assert abs(curve.length() - line) <= 0.01 * line
+    begin, end = sorted(np.random.default_rng(seed).integers(0, len(dense), 2).tolist())
+    between = np.linalg.norm(np.diff(dense[begin : end + 1], axis=0), axis=1).sum()
+    ends = np.linspace(-np.pi, np.pi, len(dense))[[begin, end]]
+    assert abs(float(np.diff(curve.arc(ends))[0]) - between) <= 0.01 * line
+    if curve.closed:
+        assert np.allclose(curve.arc(ends[:1] + PERIOD) - curve.arc(ends[:1]), line, rtol=0.01)
     y = dense[:: 40 * curve.pieces] + np.random.default_rng(seed).normal(size=(6, 2)) * 0.02
     apart = np.linalg.norm(dense - y[:, None], axis=-1).min(axis=1)
     step = np.linalg.norm(np.diff(dense, axis=0), axis=1).max()
