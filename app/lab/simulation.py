@@ -352,6 +352,12 @@ class Simulation:
         }
         self.forces = ExternalForces(self.robot, self.runs, self.note, self.wall)
 
+    def prepare_loops(self) -> None:
+        """Have the loops made that it needs, free and held, when no lab waits for others."""
+        for run in self.runs.values():
+            for free in (True, False):
+                self._loop_cache.prepare(run.robot, replace(run.kind, free=free))
+
     # The lab's own settings
 
     def set(self, **changes: Any) -> None:

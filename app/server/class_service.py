@@ -18,6 +18,7 @@ from onpath.app.server.followed_lab import FollowedLab
 from onpath.app.server.lab_registry import LabRegistry
 from onpath.app.server.page_context import ClassSeat
 from onpath.app.server.site_address import is_local
+from onpath.app.server.step_loops import StepLoops
 from onpath.app.server.visit import Visit
 from onpath.app.simulation.scheduled_lab import ScheduledLab
 from onpath.app.storage.lab_state import keep
@@ -56,6 +57,7 @@ class ClassService:
         self._records, self._keeper = records, keeper
         self._visits, self._lost = visits, lost
         self._places = dict[str, tuple[Visit, Callable[[str], None]]]()  # who asks for one, by lab
+        self._loops = StepLoops(registry)
         self.remotes = ClassRemotes(classroom, course, self._teaching_alone)
         self.remotes.rounds.start()
         self.wall = ClassWall(classroom, course=course, registry=registry, send=send)
@@ -70,6 +72,7 @@ class ClassService:
         """Stop, with the server."""
         self._attendance.rounds.stop()
         self.remotes.rounds.stop()
+        self._loops.close()
         self.wall.close()
         if self._class_keeper is not None:
             self._class_keeper.stop()
@@ -198,6 +201,7 @@ class ClassService:
             progress=lambda: lab.lessons.progress,
             presents=lambda: lab.simulation.settings.presenting,
             why_still=self.followed(chosen).why_still,
+            prepare=self._loops.prepare,
             send_setup=send_setup,
             delete=self._delete,
             give_place=self._give_place,
@@ -221,6 +225,7 @@ class ClassService:
             progress=lambda: progress,
             presents=lambda: False,
             why_still=lambda _: "",
+            prepare=self._loops.prepare,
             send_setup=lambda: None,
             delete=self._delete,
             give_place=self._give_place,

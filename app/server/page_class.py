@@ -97,6 +97,8 @@ class PageClass:
                 answers = ClassAnswers(self._course, words, self._teaching, self._computing.submit)
                 form = TeacherForm(self._course, words, self._teaching, answers)
                 self._form = language, form
+            for step in self._form[1].near():
+                self._teaching.prepare(step)
             self._seen = *self._form[1].shown(), dict(self._teaching.chosen.refused)
         finally:
             self._busy = False

@@ -49,10 +49,8 @@ def warm_up(loop_cache: LoopCache, course: Course, rest: float = REST) -> Thread
         for versions in (*course.lessons.values(), *course.tests.values()):
             list(versions.values())
 
-    def compile_loops() -> None:
-        for run in Simulation(loop_cache).runs.values():
-            for free in (True, False):
-                loop_cache.prepare(run.robot, replace(run.kind, free=free))
+    def make_loops() -> None:
+        Simulation(loop_cache).prepare_loops()
 
     def import_modules() -> None:
         for name in LATER:
@@ -63,7 +61,7 @@ def warm_up(loop_cache: LoopCache, course: Course, rest: float = REST) -> Thread
         mimetypes.init()  # the types of files, for downloads
 
     def work() -> None:
-        parts = [read_lessons, compile_loops, import_modules, partial(build_robots, loop_cache)]
+        parts = [read_lessons, make_loops, import_modules, partial(build_robots, loop_cache)]
         tries = TRIES
         while parts and tries:
             time.sleep(rest)

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from onpath.app.classroom.classroom import Classroom
+from onpath.app.lab.commands import TakeStep
 from onpath.lessons.pace import Pace
 from onpath.lessons.progress import Answer, Progress
 from onpath.lessons.words import Words
@@ -54,6 +55,7 @@ class TeacherContext:
         has_lab: whether the page shows a lab: the teacher's own, or that of a student.
         presents: whether the teacher presents, with large type for a projector.
         why_still: why the displayed lab is missing or stopped; empty if it runs.
+        prepare: prepares a step that the class may be taken to.
         send_setup: sends the set-up of the teacher's own lab to all students.
         delete: deletes the student of a lab code, with everything that is stored of them.
         give_place: gives a student, by lab code, the former place that the student claims.
@@ -70,6 +72,7 @@ class TeacherContext:
     progress: Callable[[], Progress]
     presents: Callable[[], bool]
     why_still: Callable[[Words], str]
+    prepare: Callable[[TakeStep], None]
     send_setup: Callable[[], None]
     delete: Callable[[str], None]
     give_place: Callable[[str], None]

@@ -60,6 +60,14 @@ class TeacherForm:
             groups.append(self._record())
         return FormMessage(place="class", groups=tuple(groups)), dict(self._values())
 
+    def near(self) -> list[TakeStep]:
+        """The displayed step and the next one, to which the class may be taken soon."""
+        classroom = self._teaching.classroom
+        if not self._course.lessons:
+            return []
+        after = self._steps.beside(classroom.display, classroom.orders, 1)
+        return [TakeStep(*self._shown), *([] if after is None else [after])]
+
     # Fields.
 
     def _lead(self) -> FormGroup:

@@ -7,7 +7,7 @@ from functools import partial
 from typing import Any
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from onpath.app.classroom.classroom import MOST_ASKING, NUMBER_LASTS, Classroom
@@ -28,6 +28,7 @@ MOVES = st.one_of(
 
 
 @given(st.lists(MOVES, max_size=30))
+@settings(max_examples=25, deadline=None)
 def test_a_number_lets_one_page_in_once_within_two_minutes(moves: list[tuple[Any, ...]]) -> None:
     time = 0.0
     room = Classroom(lambda: time)

@@ -55,6 +55,7 @@ class Desk:
             progress=lambda: self.progress,
             presents=lambda: self.presents,
             why_still=lambda _: "",
+            prepare=lambda _: None,
             send_setup=lambda: self.calls.append("send_setup"),
             delete=self.room.leave,
             give_place=lambda code: self.calls.append(f"give_place {code}"),
