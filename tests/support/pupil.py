@@ -8,7 +8,6 @@ from collections.abc import Iterator
 import pytest
 from playwright.sync_api import Locator
 
-from onpath.lessons.derivation.judged import points_of, value_of
 from onpath.lessons.schema import (
     Choice,
     Derivation,
@@ -221,10 +220,9 @@ class Pupil:
         """Type what is right, after something else for those who begin wrong."""
         notes, key = self.tab.lab.lessons, f"{self.tab.lab.lessons.index}.{place}"
         box = self.tab.page.locator(f'#op-column .step.open [data-block="{place}"]')
-        values, rows = points_of(block), 0
-        for i, line in enumerate(block.line):
-            values[line.name] = value_of(line.formula, values)
-            right = f"{values[line.name][0]:.9f}" if line.tolerance else expanded(block, i)
+        rows = 0
+        for i in range(len(block.line)):
+            right = expanded(block, i)
             for row in (right,) if self._right else ("77777", right):
                 box.locator(f'[data-line="{i}"] input').fill(row)
                 box.locator(f'[data-line="{i}"] button').click()
