@@ -188,7 +188,12 @@ def seen(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator
 def _running_and_paused(reader: SiteReader) -> Iterator[SiteReader]:
     """A page with a figure, also while its time stands still: then one can go on by a step."""
     yield from _before_and_while_held(reader)
+    yield from _paused(reader)
+
+
+def _paused(reader: SiteReader) -> Iterator[SiteReader]:
     reader.page.get_by_role("button", name=ENGLISH("run.pause"), exact=True).first.click()
+    reader.page.get_by_role("button", name=ENGLISH("run.step"), exact=True).first.wait_for()
     yield reader
 
 
@@ -224,6 +229,7 @@ def _every_step(reader: SiteReader) -> Iterator[SiteReader]:
             yield reader
     reader.page.evaluate("site.stage.run(true)")
     yield reader
+    yield from _paused(reader)
 
 
 def _denied(cell: str) -> bool:

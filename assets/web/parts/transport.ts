@@ -32,7 +32,7 @@ export class Transport {
         this.brakes(this.held)
         this.run = this.button("", ["run.run", "run.pause"], "run.run_hint", () => this.toggleRun())
         this.rate = this.rates()
-        this.step = this.button("step", ["run.step"], "key.right", () => this.engine.act({ do: "step" }))
+        this.step = this.button("", ["run.step"], "key.right", () => this.engine.act({ do: "step" }))
         const every: Record<string, HTMLElement[]> = {
             run: [this.run],
             reset: [this.button("", ["run.reset"], "key.reset", () => this.engine.act({ do: "reset" }))],
