@@ -237,12 +237,15 @@ def test_what_is_said_to_help_does(size: float | None, sides: int) -> None:
         assert isinstance(again.found, FollowCurve) and not again.why, text
 
 
-def test_undo_takes_back_an_upload_and_each_change_of_its_placing_as_one_step() -> None:
+def test_undo_takes_back_an_upload_each_change_of_its_placing_and_a_stroke_as_one_step() -> None:
     lab, designs = new_lab(0.2), list[Any]()
     editor = lab.simulation.editor
     for size in (0.06, 0.08, 0.1):
         designs.append(editor.design)
         do(lab, command(read(LINES, "a.svg", Placing(fit=size))))
+    designs.append(editor.design)
+    do(lab, c.DrawPath(np.array([[-0.05, 0.0], [0.0, 0.02], [0.05, -0.01]])))
+    assert editor.design.name == "drawn" and editor.design is not designs[-1]
     for design in reversed(designs):
         do(lab, c.Undo())
         assert editor.design is design
