@@ -162,12 +162,12 @@ def test_finish_shows_own_curves_what_to_take_away_and_the_next_lesson(tab: Tab)
     wait_for_heading(tab, "What you predicted, and what happened")
     assert tab.button("Open lesson 1b: Let the clock wait").is_visible()
     tab.press("Back")
-    wait_for_heading(tab, "Thirty times as far")
+    wait_for_heading(tab, "Your name, written twice")
 
 
 def test_the_free_lab_is_unchanged(tab: Tab) -> None:
     tab.page.get_by_role("button", name="Free lab").click()
-    tab.page.get_by_role("heading", name="Thirty times").wait_for(state="detached")
+    tab.page.get_by_role("heading", name="Your name, written twice").wait_for(state="detached")
     wait_for(lambda: tab.lab.lessons.lesson is None)
     usual = tab.simulation.entry.parameters()
     wait_for(lambda: tab.simulation.parameters == replace(usual, **NEWCOMER))
