@@ -126,7 +126,9 @@ def is_right(block: Asked, given: Given) -> bool:
     if isinstance(block, NumberQuestion):
         return given.number is not None and block.accepts(given.number)
     option = None if given.answer is None else given.answer.option
-    if not isinstance(block, Choice | Quiz) or option not in range(len(block.options)):
+    if not isinstance(block, Choice | Quiz) or option is None:
+        return False
+    if option not in range(len(block.options)):
         return False
     return block.options[option].right
 

@@ -250,6 +250,7 @@ def test_a_server_built_while_another_is_being_built_listens(
             channel=hardening.DataChannel(),
             course_url="",
             scripts=b"",
+            screen=lambda *_: "",
         ):
             lock.asked.clear()
             threading.Thread(target=build, daemon=True).start()
