@@ -22,9 +22,8 @@ from tests.support.rig import Rig
 settings.register_profile("laws", deadline=None, derandomize=True, max_examples=40)
 settings.register_profile("fuzz", deadline=None, print_blob=True)
 settings.load_profile("laws")
-# Servers started from here heed both signals, too, when a shell has started the tests in the background.
-signal.signal(signal.SIGINT, signal.default_int_handler)
-signal.signal(signal.SIGHUP, signal.SIG_DFL)
+signal.signal(signal.SIGINT, signal.default_int_handler)  # servers started from here heed it, too,
+# when a shell has started the tests in the background
 
 MOST_REPEATED = 5
 """Tests that `.ci/run` may repeat before they pass; it shows why each of them failed."""

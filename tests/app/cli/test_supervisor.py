@@ -105,7 +105,9 @@ def lab(tmp_path: Path) -> Iterator[Callable[..., Lab]]:
 def test_a_lab_that_is_killed_starts_again_until_it_is_ended(
     lab: Callable[..., Lab], end: signal.Signals
 ) -> None:
+    under_nohup = signal.signal(signal.SIGHUP, signal.SIG_DFL)  # perhaps; then it would be ignored
     made = lab()
+    signal.signal(signal.SIGHUP, under_nohup)
     for number in range(3):
         os.kill(made.life(number), signal.SIGKILL)
     last = made.life(3)
