@@ -1,13 +1,15 @@
 """Drawings as users edit them: a curve of many pieces with handles on it.
 
-A handle at θ_h is dragged by s. With the distances a and b of its neighbours before and after it,
-the control point that acts most at ξ_j is moved by w_j s,
+A handle is dragged by s. The control point that acts most at the distance ξ_j from it, [rad], is
+moved by w_j s, divided by what makes the curve move by s at the handle. From 1 at the handle, w
+falls to 0 at each of its neighbours: with the stretches [a_k, b_k] between them that have no tight
+bend, and their lengths l_k,
 
-    w_j = f((ξ_j - θ_h) / b) after it, f((θ_h - ξ_j) / a) before it,   f = 1 - 35 t⁴ + 84 t⁵ - 70 t⁶
-    + 20 t⁷ for t in [0, 1], else 0,
+    w_j = 1 - Σ_k l_k² / (Σ_i l_i²) f((ξ_j - a_k) / (b_k - a_k)),
+    f = 35 t⁴ - 84 t⁵ + 70 t⁶ - 20 t⁷ for t in [0, 1], 0 before and 1 after it.
 
-divided by what makes the curve move by s at the handle. f has three derivatives that are 0 at both
-ends. So a drawing is bent between the neighbours of a handle only.
+f has three derivatives that are 0 at both ends. So a drawing is bent between the neighbours of a
+handle only, all stretches about as sharply, and a corner is carried along as it is.
 """
 
 from __future__ import annotations
@@ -15,6 +17,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 from typing_extensions import override
 
 from onpath.models.arrays import Array
@@ -23,12 +26,20 @@ from onpath.models.paths.curve_blend import aligned
 from onpath.models.paths.curve_fit import control_points, distinct
 from onpath.models.paths.curves import PERIOD, Curve, SeriesCurve, circle, segment
 from onpath.models.paths.path_design import MOST_POINTS, REACH, PathDesign
-from onpath.models.paths.spline_curves import DEGREE, WINDOW, SplineCurve, grained, piece_basis
+from onpath.models.paths.spline_curves import (
+    DEGREE,
+    PER_PIECE,
+    WINDOW,
+    SplineCurve,
+    grained,
+    piece_basis,
+)
 from onpath.models.paths.spline_fit import compared, spline_through, steadied
 
 APART = 0.04  # [m], least usual distance of handles along a drawing
 FEWEST, USUAL = 6, 12  # handles of a short drawing and of a long one; more would hide it
 NARROWEST = 3  # pieces between a handle and the end of its bump
+TIGHT = 3e-3  # [m], radius below which a bend is carried along as it is
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -37,9 +48,11 @@ class DrawingDesign(PathDesign):
 
     Attributes:
         theta: places of the handles, rising, shape (k,), [rad].
+        first: the drawing before handles were dragged, which decides what they bend.
     """
 
     theta: Array
+    first: SplineCurve
 
     @override
     def moved(self, index: int, z: Array) -> PathDesign:
@@ -48,9 +61,9 @@ class DrawingDesign(PathDesign):
             raise CodedError("error.point_not_finite")
         curve = self._curve
         shift = np.clip(z, -REACH, REACH) - curve.at(self.theta[index])
-        points = grained(curve.points + bump(curve, self.theta, index)[:, None] * shift)
+        points = grained(curve.points + self.weights(index)[:, None] * shift)
         bent = replace(curve, points=points, given=None, deviation=0.0)
-        return DrawingDesign("edited", bent, bent.at(self.theta), self.theta)
+        return replace(self, name="edited", curve=bent, points=bent.at(self.theta))
 
     @override
     def added(self, index: int) -> PathDesign:
@@ -74,6 +87,31 @@ class DrawingDesign(PathDesign):
             raise CodedError("error.too_few_points", least=least)
         return self._with_handles(np.delete(self.theta, index))
 
+    def weights(self, index: int) -> Array:
+        """How far each control point moves if a handle is moved by 1, shape (pieces + DEGREE,)."""
+        curve, theta, closed = self.first, self.theta, self.first.closed
+        here, count, width = float(theta[index]), len(theta), PERIOD / curve.pieces
+        before = here - theta[index - 1] if index or closed else np.inf
+        after = theta[(index + 1) % count] - here if index + 1 < count or closed else np.inf
+        before, after = (each % PERIOD if closed else each for each in (before, after))
+        if np.inf in (before, after):
+            before = after = min(before, after)
+        before, after = (min(max(each, NARROWEST * width), np.pi) for each in (before, after))
+        number = np.arange(len(curve.points), dtype=np.float64)
+        away = width * (number - (DEGREE - 1) / 2) - np.pi - here
+        if closed:
+            away = away[np.arange(len(away)) % curve.pieces]
+            away = (away + np.pi) % PERIOD - np.pi
+        moved = np.where(
+            away > 0,
+            _carried(curve, here, 1, after, away),
+            _carried(curve, here, -1, before, -away),
+        )
+        place = (here + np.pi) / width
+        piece = min(int(place), curve.pieces - 1)
+        basis = np.array(piece_basis(place - piece, 1 / width)[0])
+        return moved / (basis @ moved[piece : piece + WINDOW])
+
     @property
     def _curve(self) -> SplineCurve:
         assert isinstance(self.curve, SplineCurve)
@@ -83,32 +121,6 @@ class DrawingDesign(PathDesign):
         if self.curve.closed:
             theta = np.sort((theta + np.pi) % PERIOD - np.pi)
         return replace(self, points=self.curve.at(theta), theta=theta)
-
-
-def bump(curve: SplineCurve, theta: Array, index: int) -> Array:
-    """How far each control point moves if a handle is moved by 1, shape (pieces + DEGREE,).
-
-    Args:
-        theta: places of the handles, rising, [rad].
-        index: of the handle.
-    """
-    here, count, width = float(theta[index]), len(theta), PERIOD / curve.pieces
-    before = here - theta[index - 1] if index or curve.closed else np.inf
-    after = theta[(index + 1) % count] - here if index + 1 < count or curve.closed else np.inf
-    before, after = (each % PERIOD if curve.closed else each for each in (before, after))
-    if np.inf in (before, after):
-        before = after = min(before, after)
-    before, after = (min(max(each, NARROWEST * width), np.pi) for each in (before, after))
-    away = -np.pi + width * (np.arange(len(curve.points)) - (DEGREE - 1) / 2) - here
-    if curve.closed:
-        away = away[np.arange(len(away)) % curve.pieces]
-        away = (away + np.pi) % PERIOD - np.pi
-    t = np.minimum(np.where(away > 0, away / after, -away / before), 1.0)
-    weights = 1 - t**4 * (35 - 84 * t + 70 * t**2 - 20 * t**3)
-    place = (here + np.pi) / width
-    piece = min(int(place), curve.pieces - 1)
-    basis = np.array(piece_basis(place - piece, 1 / width)[0])
-    return weights / (basis @ weights[piece : piece + WINDOW])
 
 
 def drawn(stroke: Array) -> PathDesign:
@@ -143,7 +155,7 @@ def from_curve(curve: Curve) -> PathDesign:
     """
     if isinstance(curve, SplineCurve):
         theta = _handles(curve)
-        return DrawingDesign("drawn", curve, curve.at(theta), theta)
+        return DrawingDesign("drawn", curve, curve.at(theta), theta=theta, first=curve)
     assert isinstance(curve, SeriesCurve)
     rightwards = segment((-0.1, 0.0), (0.1, 0.0))
     turned = aligned(curve, circle(0.1) if curve.closed else rightwards)
@@ -161,3 +173,34 @@ def _handles(curve: SplineCurve) -> Array:
     count = int(np.clip(s[-1] / APART, FEWEST, USUAL))
     even: Array = np.linspace(0.0, float(s[-1]), count, endpoint=not curve.closed)
     return np.interp(even, s, theta)
+
+
+def _carried(curve: SplineCurve, here: float, side: int, far: float, away: Array) -> Array:
+    """w of control points on one side of a handle.
+
+    Args:
+        curve: the first drawing.
+        here: θ of the handle.
+        side: 1 after it, -1 before it.
+        far: distance from which w is 0, [rad].
+        away: distances of the control points, [rad].
+    """
+    width = PERIOD / curve.pieces
+    turns = np.array([-PERIOD, 0.0, PERIOD] if curve.closed else [0.0])
+    tight = width * (np.flatnonzero(_tight(curve)) + 0.5) - np.pi - here
+    middles, half = np.sort(side * np.add.outer(turns, tight).ravel()), width * DEGREE / 2
+    begin = np.clip(np.append(0.0, middles + half), 0.0, far)
+    end = np.clip(np.append(middles - half, far), 0.0, far)
+    free = end - begin > width / 2
+    begin, end = (begin[free], end[free]) if free.any() else (np.zeros(1), np.array([far]))
+    squares = (curve.arc(here + side * end) - curve.arc(here + side * begin)) ** 2
+    t = np.clip((away[:, None] - begin) / (end - begin), 0.0, 1.0)
+    return 1.0 - t**4 * (35 - 84 * t + 70 * t**2 - 20 * t**3) @ (squares / squares.sum())
+
+
+def _tight(curve: SplineCurve) -> NDArray[np.bool_]:
+    """Whether the bends of each piece are tight, shape (pieces,)."""
+    count = PER_PIECE * curve.pieces
+    theta = PERIOD * (np.arange(count) + 0.5) / count - np.pi
+    bends = np.abs(curve.curvature(theta)).reshape(curve.pieces, PER_PIECE)
+    return bends.max(axis=1) > 1 / TIGHT

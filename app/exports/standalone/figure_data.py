@@ -47,7 +47,7 @@ from onpath.models.control.sides import RIGHT, SIDES
 from onpath.models.paths import curve_fit
 from onpath.models.paths.curve_faults import ambiguities
 from onpath.models.paths.curves import HARMONICS, Curve
-from onpath.models.paths.drawing_design import DrawingDesign, bump
+from onpath.models.paths.drawing_design import DrawingDesign
 from onpath.models.paths.path_checks import DRAWING_CHECKS, FINER, POINT_CHECKS, SAMPLES
 from onpath.models.paths.path_design import PathDesign
 from onpath.models.paths.spline_curves import GRAIN, SplineCurve
@@ -298,10 +298,10 @@ def _handles(design: PathDesign) -> list[dict[str, Any]]:
     """θ of a drawing's handles, and how far each control point moves with one; none of a series."""
     if not isinstance(design, DrawingDesign):
         return []
-    curve, theta = design.curve, design.theta
-    assert isinstance(curve, SplineCurve)
-    weights = [bump(curve, theta, index).tolist() for index in range(len(theta))]
-    return [{"theta": at, "weights": w} for at, w in zip(theta.tolist(), weights, strict=True)]
+    return [
+        {"theta": at, "weights": design.weights(index).tolist()}
+        for index, at in enumerate(design.theta.tolist())
+    ]
 
 
 def _outline(figure: FigureChoice, curve: Curve, path: Curve) -> list[float]:

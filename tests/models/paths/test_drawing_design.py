@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.interpolate import CubicSpline
 
@@ -16,6 +16,7 @@ from onpath.models.paths.drawing_design import DrawingDesign, drawn, from_curve
 from onpath.models.paths.nearest_path import nearest_path
 from onpath.models.paths.path_design import MOST_POINTS, REACH
 from onpath.models.paths.spline_curves import GRAIN, SplineCurve
+from onpath.models.paths.spline_fit import spline_through
 from onpath.models.systems.catalogue import FIVE_BAR
 from tests.support.drawings import random_drawing, scrawl
 
@@ -67,6 +68,31 @@ def test_a_handle_follows_the_hand_and_bends_only_up_to_its_neighbours(seed: int
     assert not (bent & ~inside).any()
     back = moved.moved(index, design.points[index])
     assert np.abs(back.curve.at(sample) - design.curve.at(sample)).max() < 3 * GRAIN
+
+
+@settings(max_examples=12, deadline=None)
+@given(SEEDS)
+def test_a_corner_is_carried_along_as_it_is(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    count = int(rng.integers(3, 6))
+    angle = PERIOD * (np.arange(2 * count) / (2 * count) + rng.random())
+    radius = np.where(np.arange(2 * count) % 2, rng.uniform(0.4, 0.6), 1.0) * 0.06
+    star = radius[:, None] * np.column_stack([np.cos(angle), np.sin(angle)])
+    design = from_curve(spline_through([star], closed=True))
+    assert isinstance(design, DrawingDesign)
+    index = int(rng.integers(len(design.points)))
+    moved = design.moved(index, design.points[index] + rng.normal(scale=0.01, size=2))
+    pieces = design.first.pieces
+    theta = PERIOD * (np.arange(pieces)[:, None] + np.linspace(0, 1, 9)) / pieces - np.pi
+    bends = np.abs(design.curve.curvature(theta)).max(axis=1)
+    for gap in (-gaps(design, index)[0], gaps(design, index)[1]):
+        between = design.theta[index] + np.linspace(0, gap, 200)
+        place = ((between + np.pi) * pieces / PERIOD)[:, None] - np.flatnonzero(bends > 1 / 4e-3)
+        inside = (place + 2) % pieces < 5  # of the control points that act on a tight bend
+        assume((~inside.any(axis=1)).mean() * abs(gap) * pieces / PERIOD > 1.0)
+    shift = moved.curve.at(theta) - design.curve.at(theta)
+    tight = bends > 1 / 2e-3
+    assert tight.any() and np.ptp(shift, axis=1)[tight].max() < 3 * GRAIN
 
 
 @pytest.mark.thorough
