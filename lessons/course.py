@@ -273,7 +273,7 @@ def _reference_faults(reference: Reference, robot: str) -> Iterator[str]:
 
 def _differences(first: Lesson, other: Lesson, file: Path) -> Iterator[Problem]:
     """Differences between a translation and the lesson in more than the words."""
-    for name in ("needs", "goals", "misconception"):
+    for name in ("needs", "goals", "misconception", "picture"):
         if bool(getattr(first.front, name)) != bool(getattr(other.front, name)):
             yield Problem(str(file), 1, f"{name} is not given in both languages")
     if len(first.front.takeaway) != len(other.front.takeaway):

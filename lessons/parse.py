@@ -11,6 +11,7 @@ from typing import Any, get_args
 
 from markdown_it.token import Token
 from markupsafe import Markup
+from msgspec.structs import replace
 
 from onpath.lessons.action_schema import Script, StepSetup
 from onpath.lessons.adaptive.branches import faults_of_when
@@ -22,7 +23,7 @@ from onpath.lessons.formulas import TextError, reader
 from onpath.lessons.kept.option_keys import keys_of
 from onpath.lessons.measures.stated import Stated, take_stated
 from onpath.lessons.problems import LessonError, Problem, line_of
-from onpath.lessons.prose import data_faults, read_prose, text_faults
+from onpath.lessons.prose import data_faults, own_picture, read_prose, text_faults
 from onpath.lessons.rendered import rendered
 from onpath.lessons.schema import (
     Block,
@@ -169,7 +170,9 @@ class _Reader:
             self._robot = self._home = front.robot
             try:
                 front = rendered(front)
-            except TextError as error:
+                if front.picture:
+                    front = replace(front, picture=own_picture(front.picture, self._path.parent))
+            except ValueError as error:
                 self._complain(2, str(error))
         return front, ends[1] + 1
 

@@ -149,18 +149,27 @@ def _pictures(children: Sequence[Token], home: Path) -> Iterator[str]:
         if "{{" in image.content:
             yield f"picture {source!r}: a number stands in the text, not in what the picture shows"
         try:
-            picture = (home / source).resolve()
-            if ELSEWHERE.match(source):
-                raise ValueError(f"picture {source[:40]!r}: {PICTURE_RULE}")
-            if not picture.is_relative_to(home.resolve()):
-                raise ValueError(f"picture {source!r} is not in the lesson's folder")
-            image.attrSet("src", embedded(picture))
-        except (OSError, RuntimeError):  # the latter for links that lead to each other
-            image.type = "text"
-            yield f"no picture {source!r}: {PICTURE_RULE}"
+            image.attrSet("src", own_picture(source, home))
         except ValueError as error:
             image.type = "text"
             yield str(error)
+
+
+def own_picture(source: str, home: Path) -> str:
+    """A picture in a lesson's folder as a data: URL.
+
+    Raises:
+        ValueError: there is no such picture in the folder, or see `formulas.embedded`.
+    """
+    try:
+        picture = (home / source).resolve()
+        if ELSEWHERE.match(source):
+            raise ValueError(f"picture {source[:40]!r}: {PICTURE_RULE}")
+        if not picture.is_relative_to(home.resolve()):
+            raise ValueError(f"picture {source!r} is not in the lesson's folder")
+        return embedded(picture)
+    except (OSError, RuntimeError):  # the latter for links that lead to each other
+        raise ValueError(f"no picture {source!r}: {PICTURE_RULE}") from None
 
 
 def _links(children: list[Token], robot: str, faults: list[str]) -> Iterator[LabLink]:

@@ -289,6 +289,7 @@ class Front(Data, frozen=True):
     """The front matter of a lesson, between two lines +++.
 
     Attributes:
+        picture: for the list of lessons, as a data: URL (in the file, its name); may be empty.
         needs: what the student must know, which follows "You need:" on the first page.
         goals: what the student learns, which follows "Afterwards you can:" on the first page.
         misconception: for the teacher, the false belief that the lesson targets.
@@ -299,6 +300,7 @@ class Front(Data, frozen=True):
 
     title: str
     summary: str
+    picture: str = ""
     minutes: int | None = None
     robot: str = "five_bar"
     needs: str = ""

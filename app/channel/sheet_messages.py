@@ -222,6 +222,7 @@ class LessonCard(Struct, frozen=True, kw_only=True):
 
     Attributes:
         number: empty for a test.
+        picture: a data: URL, or empty.
         facts: how long it takes, and the like.
         done: share of what is required that is done.
         begun, finished: how far the student is.
@@ -229,6 +230,7 @@ class LessonCard(Struct, frozen=True, kw_only=True):
 
     name: str
     number: str
+    picture: str
     title: str
     summary: str
     facts: list[str]

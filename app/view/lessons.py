@@ -38,6 +38,7 @@ def lesson_card(lesson: Lesson, run: LessonState, number: str) -> LessonCard:
     return LessonCard(
         name=lesson.name,
         number=number,
+        picture=lesson.front.picture,
         title=lesson.front.title,
         summary=lesson.front.summary,
         facts=facts,
@@ -58,6 +59,7 @@ def _test_cards(name: str, run: LessonState) -> list[LessonCard]:
     card = LessonCard(
         name=name,
         number="",
+        picture=lesson.front.picture,
         title=titles_of_tests(run.course, words)[name],
         summary=lesson.front.summary,
         facts=[minutes, *([words("test.handed_in")] if handed_in else [])],

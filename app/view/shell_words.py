@@ -31,6 +31,7 @@ SHELL = (
     *(f"aid.{name}_means" for name in AIDS),
     *("laws.about", "laws.own_heading", "laws.name", "laws.meaning", "laws.unit"),
     *("lesson.choose", "lesson.done", "lesson.begun", "route.routes", "route.follow"),
+    *("lesson.begin_here", "lesson.go_on_here"),
     "robots.choose",
     "robots.illustrative",
     *("keep.title", "keep.yours", "keep.other", "keep.other_hint", "keep.go", "keep.share"),

@@ -61,6 +61,8 @@ def test_a_lesson_is_read(tmp_path: Path) -> None:
     [
         ('title = "A lesson"', 'tilte = "A lesson"', "tilte"),
         ("minutes = 1", 'minutes = "one"', "minutes"),
+        ("minutes = 1", 'picture = "no.svg"', "no picture 'no.svg'"),
+        ("minutes = 1", 'picture = "../no.svg"', "not in the lesson's folder"),
         ("# play: Look around", "# plai: Look around", "plai"),
         ("K1 = 300", "K1 = 30000", "K1"),
         ("K1 = 300", "K9 = 300", "K9"),

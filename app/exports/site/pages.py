@@ -25,6 +25,7 @@ POLICY = (
 WebAssembly, pictures of the site and of the lessons' texts, the site's font for formulas, no
 requests to other servers."""
 MESSAGES = (
+    *("lesson.begin_here", "lesson.go_on_here"),
     *("lesson.finish", "lesson.next", "lesson.skip", "report.not_happened"),
     *("site.forgotten", "site.forget_sure", "site.read_done", "site.no_progress", "site.not_kept"),
     *("site.no_platform", "site.no_room", "site.skip_short"),
@@ -76,6 +77,7 @@ def start_page(
     """
     lessons = {
         entry.lesson.name: {
+            "number": entry.number,
             "steps": len(entry.lesson.steps),
             "required": entry.lesson.required_steps(),
             "tasks": [task.id for task in entry.lesson.required_tasks()],

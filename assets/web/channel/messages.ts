@@ -741,6 +741,8 @@ export interface LessonCard {
     name: string
     /** empty for a test. */
     number: string
+    /** a data: URL, or empty. */
+    picture: string
     title: string
     summary: string
     /** how long it takes, and the like. */

@@ -209,7 +209,7 @@ export interface PageData {
     scorm?: Package | null
     figures: SiteFigure[]
     steps: StepData[]
-    lessons: Record<string, { steps: number; required: number; tasks: string[] }>
+    lessons: Record<string, { number: string; steps: number; required: number; tasks: string[] }>
 }
 
 export interface Answer {

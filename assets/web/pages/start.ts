@@ -2,6 +2,7 @@
 
 import { save } from "../core/dom"
 import type { PageData } from "../core/lesson_data"
+import { nextLesson } from "../core/next_lesson"
 import { refused } from "../core/refusal"
 import { phrase } from "../core/words"
 import { Simulation } from "../simulation/simulation"
@@ -42,13 +43,22 @@ export class StartPage {
 
     private readonly button = (name: string, act: () => void) => document.getElementById(name)!.addEventListener("click", act)
     private show(): void {
-        for (const element of document.querySelectorAll<HTMLElement>("[data-lesson]")) {
-            const { steps, required, tasks } = this.page.lessons[element.dataset["lesson"]!]!
-            const notes = notesOf(this.progress, element.dataset["lesson"]!)
-            const passed = Object.keys(notes.tasks).length
-            const counts = { done: String(notes.seen), all: String(steps), tasks: String(passed) }
-            const finished = notes.seen >= required && tasks.every(id => id in notes.tasks)
-            element.textContent = notes.seen ? `· ${finished ? "✓ " : ""}${phrase(this.page, "site.done", counts)}` : ""
+        const lessons = Object.entries(this.page.lessons).map(([name, { number, steps, required, tasks }]) => {
+            const notes = notesOf(this.progress, name), passed = Object.keys(notes.tasks).length
+            const done = Math.min(notes.seen, required) + tasks.filter(id => id in notes.tasks).length
+            const all = required + tasks.length
+            return { name, number, seen: notes.seen, steps, passed, done: done / all, finished: done === all }
+        })
+        const next = nextLesson(lessons)
+        for (const lesson of lessons) {
+            const { name, seen, steps, passed, done, finished } = lesson
+            const counts = phrase(this.page, "site.done", { done: String(seen), all: String(steps), tasks: String(passed) })
+            const told = (kind: string) => document.querySelector<HTMLElement>(`[data-${kind}="${name}"]`)!
+            told("lesson").textContent = seen ? `· ${finished ? "✓ " : ""}${counts}` : ""
+            const bar = told("done") as HTMLProgressElement
+            bar.hidden = !seen
+            bar.value = done
+            told("here").textContent = lesson === next ? phrase(this.page, seen ? "lesson.go_on_here" : "lesson.begin_here") : ""
         }
     }
 

@@ -2,6 +2,7 @@
 
 import type { Command, LessonCard, LessonSheet, RouteCard } from "../channel/messages"
 import { made } from "../core/dom"
+import { nextLesson } from "../core/next_lesson"
 import { phrase, type Texts } from "../core/words"
 import { icon } from "./icons"
 import { pressed, SheetDialog } from "./sheet"
@@ -14,7 +15,7 @@ export function chooseLesson(texts: Texts, { lessons, routes, open }: LessonShee
         sheet.close()
         send(command)
     }
-    const next = lessons.find(each => each.name === open) ?? lessons.find(each => each.number && !each.finished)
+    const next = lessons.find(each => each.name === open && !each.finished) ?? nextLesson(lessons)
     const cards = lessons.map(lesson => [lesson, cardOf(texts, lesson, lesson === next, () => go({ do: "OpenLesson", name: lesson.name }))] as const)
     const list = made("ol", "lessons", ...cards.map(([, card]) => made("li", "", card)))
     sheet.body.append(list)
@@ -23,7 +24,7 @@ export function chooseLesson(texts: Texts, { lessons, routes, open }: LessonShee
     return sheet
 }
 
-/** A lesson as one button, with a ring of what is done around its number. */
+/** A lesson as one button, with its picture, and a ring of what is done around its number. */
 function cardOf(texts: Texts, lesson: LessonCard, isNext: boolean, act: () => void): HTMLElement {
     const ring = made("span", "ring", lesson.finished ? icon("done") : lesson.number || "?")
     ring.style.setProperty("--done", String(lesson.done))
@@ -33,6 +34,8 @@ function cardOf(texts: Texts, lesson: LessonCard, isNext: boolean, act: () => vo
     const facts = [...(state ? [phrase(texts, state)] : []), ...lesson.facts].join(" · ")
     const card = pressed(`card${isNext ? " next" : ""}`, "", act)
     card.append(ring, made("b", "", name), made("span", "summary", lesson.summary), made("span", "facts", facts))
+    if (lesson.picture) card.prepend(Object.assign(made("img", "about"), { src: lesson.picture, alt: "" })) // its title stands beside it
+    if (isNext) card.append(made("b", "here", phrase(texts, lesson.begun ? "lesson.go_on_here" : "lesson.begin_here")))
     return card
 }
 

@@ -113,6 +113,15 @@ def test_a_lesson_is_finished_when_its_steps_are_seen_and_its_tasks_passed() -> 
     assert done.done == 1 and done.finished
 
 
+@pytest.mark.parametrize("words", [Words(language) for language in languages()])
+def test_every_lesson_has_a_small_picture_of_its_own(words: Words) -> None:
+    cards = lesson_sheet(LessonState(COURSE, Progress(), words)).lessons
+    pictures = [card.picture for card in cards if card.number]
+    assert len(pictures) == len(set(pictures)) == len(COURSE.lessons)
+    for each in pictures:
+        assert each.startswith("data:image/svg+xml;base64,") and len(each) < 2000
+
+
 @pytest.mark.parametrize("language", languages())
 @pytest.mark.parametrize("robot", ["five_bar", "spatial_arm"])
 def test_the_sheet_of_laws_tells_every_law_and_every_name(robot: str, language: str) -> None:
