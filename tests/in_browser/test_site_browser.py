@@ -93,10 +93,10 @@ def test_lesson_1_by_mouse_and_its_progress_is_kept_and_carried(
     lesson_one_by_mouse(reader)
     reader.page.reload()
     wait_for(lambda: reader.page.get_by_text(END).is_visible(), WAIT)
-    assert reader.page.locator("#step-12 .compared").count() == 3
+    assert reader.page.locator("#step-13 .compared").count() == 3
     reader.page.get_by_role("link", name="Lessons").click()
     done = reader.page.locator(f"[data-lesson='{LESSON}']")
-    wait_for(lambda: "11" in done.inner_text(), WAIT)
+    wait_for(lambda: "12" in done.inner_text(), WAIT)
     with reader.page.expect_download() as download:
         reader.press("Save as a file")
     file = tmp_path / "progress.json"
