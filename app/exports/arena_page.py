@@ -199,13 +199,14 @@ def _told(name: str, value: float, words: Words) -> str:
 
 def described(trial: Trial, words: Words) -> dict[str, object]:
     """What happens in a trial, in words with numbers."""
-    values, sizes = trial.values, np.ptp(_outline(trial), axis=0)
+    values, points = trial.values, np.concatenate(_strokes(trial))
+    sizes = np.ptp(points, axis=0)
     width, height = (f"{1e3 * size:.0f}" for size in sizes)
     shown = {name: words.number(value) for name, value in values.items()}
     begin, end = (words.number(time) for time in _acting(trial))
     if trial.obstruction == "hand":
         place = np.array([values["push_z1"], values["push_z2"]])
-        shown["away"] = f"{1e3 * np.linalg.norm(_outline(trial) - place, axis=1).min():.0f}"
+        shown["away"] = f"{1e3 * np.linalg.norm(points - place, axis=1).min():.0f}"
     limit = specs(ROBOTS[trial.robot].parameters)["torque_limit"]
     unit = parameter_unit("torque_limit", limit, words).replace(" ", NO_BREAK)
     path = path_label(trial.path, words)
@@ -219,10 +220,9 @@ def described(trial: Trial, words: Words) -> dict[str, object]:
     }
 
 
-def _outline(trial: Trial) -> Array:
-    """Points of the path in its plane, (n, 2), [m]."""
-    curve = curve_from_text(trial.path, ROBOTS[trial.robot].radius)
-    return curve.at(np.linspace(-np.pi, np.pi, 121))
+def _strokes(trial: Trial) -> list[Array]:
+    """Points of the path's lines in its plane, (n, 2) each, [m]."""
+    return curve_from_text(trial.path, ROBOTS[trial.robot].radius).strokes()
 
 
 def _acting(trial: Trial) -> tuple[float, float]:
@@ -295,8 +295,8 @@ def _pictures(result: Result, words: Words) -> dict[str, object]:
     most = max(1.5 * OFF, float(shown[:, 1].max()) if len(shown) else 0.0)
     t = shown[:, 0] / lasts * WIDTH
     d = HEIGHT - MARGIN - shown[:, 1] / most * (HEIGHT - 2 * MARGIN)
-    curve = _outline(trial)
-    both = np.concatenate([curve, shown[:, 2:]])
+    strokes = _strokes(trial)
+    both = np.concatenate([*strokes, shown[:, 2:]])
     low, size = both.min(0), float(np.ptp(both, axis=0).max()) or 1.0
     scale = (SIDE - 2 * MARGIN) / size
 
@@ -318,7 +318,7 @@ def _pictures(result: Result, words: Words) -> dict[str, object]:
         ),
         "begin": f"{begin / lasts * WIDTH:.1f}",
         "span": f"{(end - begin) / lasts * WIDTH:.1f}",
-        "path_points": placed(curve),
+        "strokes": [placed(points) for points in strokes],
         "way": placed(shown[:, 2:]) if len(shown) else "",
         "xs": ";".join(f"{x:.1f}" for x in z[:, 0]),
         "ys": ";".join(f"{SIDE - y:.1f}" for y in z[:, 1]),
