@@ -161,9 +161,10 @@ def step_figure(
     used = _used(actions)
     settable = dict.fromkeys(name for name in (*wanted, *used) if name in known)
     figure, places = _changing(figure, settable, used)
-    figure = replace(figure, remade=_remade(figure, lesson, wanted))
+    remade = _remade(figure, lesson, wanted)
+    figure = replace(figure, remade={name: each for name, each in remade.items() if len(each) > 1})
     sliders = tuple(name for name in wanted if name in (*figure.changing, *figure.remade))
-    lacking = [name for name in (*wanted, *own) if name not in (*sliders, *HERE)]
+    lacking = [name for name in (*wanted, *own) if name not in (*sliders, *remade, *HERE)]
     if step.kind == "quiz":  # asks about what was seen before
         lacking = []
     if any(action.identify for action in actions) and "identify" not in lacking:
@@ -192,8 +193,7 @@ def _remade(
             options = known[name].options
             places = [options.index(check.equals) for check in named if check.name == name]
             places.append(options.index(value_of(own, name)))
-            if len(offered := options[min(places) : max(places) + 1]) > 1:
-                remade[name] = offered
+            remade[name] = options[min(places) : max(places) + 1]
     return remade
 
 

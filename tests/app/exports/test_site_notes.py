@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import json
+import re
 from collections.abc import Iterator
 from typing import Any
 
@@ -224,6 +225,18 @@ def empty(steps: Steps) -> Notes:
     return {"step": 0, "seen": len(steps), **{kind: {} for kind in kinds}}
 
 
+def right_rows(lines: list[dict[str, Any]]) -> Iterator[str]:
+    """What is right in each line of a derivation, without the names of earlier lines."""
+    known = dict[str, str]()
+    for line in lines:
+        text = line["formula"]
+        for name, earlier in known.items():
+            text = re.sub(rf"\b{name}\b", f"({earlier})", text)
+        yield text
+        if line["name"]:
+            known[line["name"]] = text
+
+
 def all_done(steps: Steps) -> Notes:
     """Everything that is not optional, and all of it right."""
     notes = empty(steps)
@@ -244,6 +257,8 @@ def all_done(steps: Steps) -> Notes:
                 notes["numbers"][key] = notes["first"][key] = block["number"]
             elif block["kind"] == "open":
                 notes["written"][key] = "Because."
+            elif block["kind"] == "derivation":
+                notes["written"][key] = "\n".join(right_rows(block["lines"]))
             elif "checks" in block:
                 notes["tasks"][block["id"]] = 0
     return notes
@@ -265,14 +280,22 @@ def test_a_grade_is_for_what_is_done_and_right(page: NodePage, course: Course, n
     progress, score = graded(page, steps, empty(steps))  # Next was pressed until the end
     assert progress < 1 and score is None
     whole = all_done(steps)
+    derived = {
+        f"{i}.{j}"
+        for i, step in enumerate(steps)
+        for j, block in enumerate(step["blocks"])
+        if block["kind"] == "derivation"
+    }
     for kind in ("answers", "played", "tasks", "quiz", "numbers", "written"):
         for key in whole[kind]:
             notes = copy.deepcopy(whole)
             del notes[kind][key]
             notes["first"].pop(key, None)
             progress, score = graded(page, steps, notes)
-            is_judged = kind in ("tasks", "quiz", "numbers")
-            begun = notes["tasks"] or notes["quiz"] or notes["numbers"]
+            is_judged = kind in ("tasks", "quiz", "numbers") or key in derived
+            begun = any(notes[each] for each in ("tasks", "quiz", "numbers")) or (
+                derived & notes["written"].keys()
+            )
             assert progress < 1
             assert (score is None) == (not begun)
             assert score is None or (score < 1) == is_judged

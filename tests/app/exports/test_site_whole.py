@@ -61,10 +61,22 @@ def can_act(field: dict[str, Any], site: SiteStep) -> bool:
     )
 
 
+def has_one_option(lesson: Lesson, name: str) -> bool:
+    """Whether a control chooses among robots, of which no task of the lesson names one."""
+    spec = specs(ROBOTS[lesson.front.robot].parameters).get(name)
+    checks = [check for task in lesson.tasks() for check in task.check]
+    return (
+        spec is not None
+        and bool(spec.options)
+        and all(getattr(each, "name", "") != name for each in checks)
+    )
+
+
 def lacks_of(lesson: Lesson, step: Step, site: SiteStep) -> list[str]:
     """What a step has in the lab and not on the site."""
     scene = lesson.scene_at(site.number - 1)
     here = {*fields_of(site), *site.figure["controls"], *site.figure["drawings"]["shown"]}
+    here |= {name for name in scene.controls if has_one_option(lesson, name)}
     tools = {"editor": "drag", "show": "labels"}
     lacks = list[str]()
     if step.kind not in ("predict", "quiz"):
