@@ -81,9 +81,15 @@ class Script:
                 self.socket.send(SEEN)
 
     def read_until(self, kind: str, condition: Any) -> dict[str, Any]:
-        """The next message of a kind for which a condition holds."""
+        """The next message of a kind for which a condition holds.
+
+        Raises:
+            TimeoutError: none comes.
+        """
+        end = time.monotonic() + WAIT
         while not condition(message := self.read(kind)):
-            pass
+            if time.monotonic() > end:
+                raise TimeoutError(kind)
         return message
 
     def light(self, symbol: str) -> None:

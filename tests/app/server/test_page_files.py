@@ -130,7 +130,10 @@ def test_the_robots_follow_the_path_in_a_file_of_the_page(script: Script) -> Non
         across = [point[0] for point in path["points"]]
         return max(across) - min(across) == pytest.approx(6000, rel=0.05)  # 60 mm in 10 µm
 
-    assert script.read_until("path", is_there)["closed"]  # after the blend
+    path = script.told["path"]  # the last one may come before the answer
+    if not is_there(path):
+        path = script.read_until("path", is_there)  # after the blend
+    assert path["closed"]
 
 
 @pytest.mark.thorough
