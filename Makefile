@@ -1,12 +1,13 @@
 # make run   creates the environment, installs, starts the lab and prints its address
 # make test  the tests, headless Chromium included; adds what they need to the environment
 # make thorough  tests that need minutes: the numbers that lessons state, whole servers and crowds,
-#            processes that hang, a minute of attacks (.ci/run runs half of them, others every day)
+#            processes that hang (.ci/run runs half of them, others every day)
 # make pages the other tests in Chromium, of every page and dialog: an hour
 # make fuzz  the property tests with random inputs; make test has the same ones every time
 # make check lint, format, types, also of the pages' scripts      make bench  the speed tables
 #            (make bench ARGS="--clients 60": a class of sixty)
-# make soak  40 labs under attack for half an hour: lateness, memory and log stay within bounds
+# make soak  6 labs under attack for a minute, and 40 for half an hour, on a machine that does nothing else:
+#            lateness, memory and log stay within bounds
 
 PYTHON ?= python3
 VENV   ?= .venv
@@ -54,7 +55,6 @@ test: $(TOOLS) $(SCRIPTS)
 
 thorough: $(TOOLS)
 	$(PYTEST) -m thorough --ignore=tests/in_browser $(ARGS)
-	$(PYTEST) -n 0 -m soak tests/bench $(ARGS)
 
 pages: $(TOOLS)
 	$(PYTEST) -m thorough -o timeout=1800 -o faulthandler_timeout=3600 tests/in_browser $(ARGS)
@@ -84,6 +84,7 @@ bench: $(TOOLS)
 	$(BIN)/python -m tests.bench $(ARGS)
 
 soak: $(TOOLS)
+	$(PYTEST) -n 0 -m soak tests/bench
 	$(BIN)/python -m tests.bench --soak 30 $(ARGS)
 
 # The README's moving picture.

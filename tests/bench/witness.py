@@ -43,7 +43,7 @@ class Witness(Browser):
     _frames: list[tuple[float, float]] = field(default_factory=list)
     _answers: list[float] = field(default_factory=list)
     _asked: float | None = None
-    _together = True
+    _presenting = False
 
     @property
     def testimony(self) -> Testimony:
@@ -84,9 +84,9 @@ class Witness(Browser):
         while True:
             await asyncio.sleep(ASKS)
             if self._asked is None:
-                self._together = not self._together
+                self._presenting = not self._presenting
                 self._asked = time.monotonic()
-                command = {"do": "Set", "name": "copy", "value": self._together}
+                command = {"do": "Set", "name": "presenting", "value": self._presenting}
                 await socket.send(msgspec.json.encode(command), text=True)
 
     def _note(self, message: dict[str, object]) -> None:
@@ -94,8 +94,8 @@ class Witness(Browser):
         match message:
             case {"is": "frame", "rows": [*_, [ticks, *_]]}:
                 self._frames.append((now, TICKS * float(ticks)))  # type: ignore[arg-type]
-            case {"is": "state", "together": together} if self._asked is not None:
-                if together is self._together:
+            case {"is": "state", "presenting": presenting} if self._asked is not None:
+                if presenting is self._presenting:
                     self._answers.append(now - self._asked)
                     self._asked = None
             case _:
