@@ -12,7 +12,7 @@ import numpy as np
 from typing_extensions import override
 from websockets.asyncio.client import ClientConnection
 
-from tests.bench.simulated_browser import Browser
+from tests.bench.simulated_browser import ASK_FORM, Browser
 
 WINDOW = 2.0  # [s]
 TICKS = 1e-4  # [s], unit of times in frames
@@ -43,7 +43,7 @@ class Witness(Browser):
     _frames: list[tuple[float, float]] = field(default_factory=list)
     _answers: list[float] = field(default_factory=list)
     _asked: float | None = None
-    _presenting = False
+    _copied = True
 
     @property
     def testimony(self) -> Testimony:
@@ -76,7 +76,10 @@ class Witness(Browser):
         try:
             async for text in socket:
                 self.told += 1
-                self._note(msgspec.json.decode(text))
+                message = msgspec.json.decode(text)
+                if message["is"] == "lab":
+                    await socket.send(ASK_FORM)
+                self._note(message)
         finally:
             asking.cancel()
 
@@ -84,9 +87,9 @@ class Witness(Browser):
         while True:
             await asyncio.sleep(ASKS)
             if self._asked is None:
-                self._presenting = not self._presenting
+                self._copied = not self._copied
                 self._asked = time.monotonic()
-                command = {"do": "Set", "name": "presenting", "value": self._presenting}
+                command = {"do": "Set", "name": "copy", "value": self._copied}
                 await socket.send(msgspec.json.encode(command), text=True)
 
     def _note(self, message: dict[str, object]) -> None:
@@ -94,8 +97,8 @@ class Witness(Browser):
         match message:
             case {"is": "frame", "rows": [*_, [ticks, *_]]}:
                 self._frames.append((now, TICKS * float(ticks)))  # type: ignore[arg-type]
-            case {"is": "state", "presenting": presenting} if self._asked is not None:
-                if presenting is self._presenting:
+            case {"is": "values", "values": {"copy": copied}} if self._asked is not None:
+                if copied is self._copied:
                     self._answers.append(now - self._asked)
                     self._asked = None
             case _:
