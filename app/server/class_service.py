@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 
 from onpath.app.classroom.class_keeper import ClassKeeper
@@ -58,7 +59,7 @@ class ClassService:
         self._visits, self._lost = visits, lost
         self._places = dict[str, tuple[Visit, Callable[[str], None]]]()  # who asks for one, by lab
         self._loops = StepLoops(registry)
-        self.remotes = ClassRemotes(classroom, course, self._teaching_alone)
+        self.remotes = ClassRemotes(classroom, course, self._teaching_without_lab)
         self.remotes.rounds.start()
         self.wall = ClassWall(classroom, course=course, registry=registry, send=send)
         self._attendance = ClassSync(classroom, self._student)
@@ -191,28 +192,20 @@ class ClassService:
             reopen()
             self._class.revoke(shown)
 
-        return TeacherContext(
-            classroom=self._class,
-            chosen=chosen,
-            may_lead=lambda: self._class.is_pass(shown),
-            address=f"{site}{class_address(self._class.code)}",
-            is_local=is_local(site),
+        return replace(
+            self._teaching_without_lab(visit, site, teacher),
             has_lab=True,
             progress=lambda: lab.lessons.progress,
             presents=lambda: lab.simulation.settings.presenting,
             why_still=self.followed(chosen).why_still,
-            prepare=self._loops.prepare,
             send_setup=send_setup,
-            delete=self._delete,
-            give_place=self._give_place,
-            forget=self._forget,
             stop=stop,
         )
 
-    def _teaching_alone(
+    def _teaching_without_lab(
         self, visit: Visit, site: str, teacher: tuple[str, TeacherChoices]
     ) -> TeacherContext:
-        """A page of a teacher's that shows no lab; see `teaching`."""
+        """A teacher's page that shows no lab; see `teaching`."""
         shown, chosen = teacher
         progress = Progress(language=visit.language)
         return TeacherContext(

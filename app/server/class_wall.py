@@ -74,8 +74,8 @@ class WallPage:
 
 
 @dataclass(frozen=True, slots=True)
-class _Onlooker:
-    """See `class_answers.Onlooker`."""
+class WallContext:
+    """See `class_answers.AnswersContext`."""
 
     classroom: Classroom
     progress: Callable[[], Progress]
@@ -83,7 +83,7 @@ class _Onlooker:
 
 
 class ClassWall(LabDisplay):
-    """All walls of a class. Those who look on share one lab, and each message is made once for all.
+    """All walls of a class. They share one lab, and each message is made once for all of them.
 
     Args:
         send: sends what has been handed over for all pages.
@@ -111,7 +111,7 @@ class ClassWall(LabDisplay):
 
     def add(self, visit: Visit, site: str) -> None:
         """Show the wall on a page, until its visit ends. Not in the simulation thread."""
-        wall, scheduled = WallPage(visit, site), self._scheduled or self._registry.made_alone()
+        wall, scheduled = WallPage(visit, site), self._scheduled or self._registry.unowned_lab()
         self._registry.thread.call(partial(self._begin, wall, scheduled))
         visit.stream.receive = _deaf
         visit.at_end(lambda: self._registry.thread.call(partial(self._remove, wall)))
@@ -244,8 +244,8 @@ class ClassWall(LabDisplay):
         words, code = Words(language), self._class.code
         answers = self._answers.get(language)
         if answers is None:
-            onlooker = _Onlooker(self._class, lambda: lab.lessons.progress)
-            answers = ClassAnswers(self._course, words, onlooker, self._computing.submit)
+            context = WallContext(self._class, lambda: lab.lessons.progress)
+            answers = ClassAnswers(self._course, words, context, self._computing.submit)
             self._answers[language] = answers
         joining = class_code(
             address=f"{site}{class_address(code)}",

@@ -194,7 +194,7 @@ class LabRegistry:
                 self._opening.discard(code)
                 self._lock.notify_all()
 
-    def made_alone(self) -> ScheduledLab:
+    def unowned_lab(self) -> ScheduledLab:
         """A new lab that belongs to no browser, is not stored and cannot be entered."""
         with self._making:
             return ScheduledLab(self.make())

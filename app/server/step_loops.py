@@ -1,4 +1,4 @@
-"""Makes the loops of steps that a class will be taken to, before anybody waits for them."""
+"""Has the loops of a class's next steps made before anybody waits for them."""
 
 from __future__ import annotations
 
@@ -28,6 +28,6 @@ class StepLoops:
         self._thread.close()
 
     def _prepare(self, step: TakeStep) -> None:
-        lab = self._registry.made_alone().lab
+        lab = self._registry.unowned_lab().lab
         step.apply(lab)
         lab.simulation.prepare_loops()

@@ -34,7 +34,7 @@ class Visits:
         come: called in a thread with each new visit, to give it its lab.
         furnish: called in a thread when viser's client of a page has come.
         leave: called with the number of a visit that ends, before its page can be back.
-        takes: whether a prefix and a screen are somebody's; see `CountedConnection`.
+        takes: whether there is a page at a prefix and a screen; see `CountedConnection`.
 
     Attributes:
         channel: the pages' own websockets.

@@ -1,9 +1,8 @@
 """The addresses of a lab behind a proxy: /c/CODE/ for a class, and /l/NAME/ for all others.
 
 All of them serve the same page, but for /c/CODE/wall and /c/CODE/remote, the class's wall and its
-teacher's remote control. They let a proxy send
-everybody who belongs together to one process, by the path alone: viser's page opens its websocket
-at its own address.
+teacher's remote control. They let a proxy send everybody who belongs together to one process, by
+the path alone: viser's page opens its websocket at its own address.
 
 An address has one spelling, in lower case and without a query, because a proxy may send another
 spelling of it to another process. A request for a page in another spelling is redirected, and a

@@ -29,7 +29,8 @@ class Limits:
         max_connections: in total, including those that request a file.
         max_connections_each: per address; sixty students behind one address have five each,
             two of which are the websockets of a page.
-        max_screens: walls of classes, in total, which others cannot take the places of.
+        max_screens: walls and remote controls of classes, in total. They do not count as
+            connections, and no other page can take their places.
         max_screens_each: of those, per address.
         max_waiting: of further connections that have not sent a complete request yet.
         max_waiting_each: of those, per address.

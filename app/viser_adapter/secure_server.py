@@ -241,7 +241,7 @@ def _options(limits: Limits) -> dict[str, Any]:
 
 
 def _screen_page(connection: SecureConnection, screen: Callable[[str, str], str]) -> Response:
-    """The page of a class's wall, whether or not there is such a class."""
+    """A class's wall or remote control, whether or not there is such a class."""
     response = connection.respond(HTTPStatus.OK, screen(connection.screen, connection.language))
     del response.headers["Content-Type"]
     response.headers["Content-Type"] = "text/html; charset=utf-8"

@@ -28,8 +28,8 @@ BEFORE = 0.1  # [s] before a fault in which its cause is looked for
 OFTEN = 0.5  # least share of that time with the motors at their limit
 WRONG = 0.01  # relative difference of a parameter of the controller's model that counts as wrong
 PULLED = 1.0  # [N]
-AWAY = 0.5  # of the least radius on the way: larger errors are not small for a law made for those
-BETWEEN = 64  # points on that way
+AWAY = 0.5  # share of the smallest radius on the way, from which on an error is not small
+BETWEEN = 64  # points on that way, from the robot's point to the reference point
 
 
 def not_finite(law: str) -> Message:

@@ -51,8 +51,8 @@ class Students:
 
 
 @dataclass(frozen=True, slots=True)
-class AskedFirst:
-    """A question, and the votes on it: before a discussion, and after it."""
+class VotedQuestion:
+    """A question, and the votes on it: before a discussion, and after it; None without one."""
 
     lesson: str
     item: str
@@ -60,8 +60,8 @@ class AskedFirst:
     votes: tuple[Vote | None, ...]
 
 
-class Onlooker(Protocol):
-    """Where the answers are shown; see `TeacherContext`."""
+class AnswersContext(Protocol):
+    """What the answers need of where they are shown; a `TeacherContext` has it."""
 
     @property
     def classroom(self) -> Classroom:
@@ -91,7 +91,7 @@ class ClassAnswers:
         self,
         course: Course,
         words: Words,
-        teaching: Onlooker,
+        teaching: AnswersContext,
         submit: Callable[[Callable[[], None]], None] = lambda work: work(),
         *,
         peeks: bool = False,
@@ -143,10 +143,8 @@ class ClassAnswers:
     def dots(self) -> str:
         """Who is here, as dots without names: whether each has answered what the step asks first,
         is right, or has changed the answer after a discussion."""
-        words, states = self._words, list[str]()
-        asked = self._first()
-        for notes in self._notes_here(asked):
-            first, second = notes
+        asked, states = self._first_question(), list[str]()
+        for first, second in self._answers_here(asked):
             last = second or first
             if asked is None or last is None or is_skipped(last):
                 states.append("class.dots_here")
@@ -155,17 +153,17 @@ class ClassAnswers:
             else:
                 right = is_right(asked.block, last)
                 states.append("class.dots_right" if right else "class.dots_answered")
-        return page.dots_view(states, words)
+        return page.dots_view(states, self._words)
 
     def proposal(self) -> str:
         """What might be done next, by how many are right, once the votes are closed; or nothing."""
-        asked, classroom = self._first(), self._teaching.classroom
+        asked, classroom = self._first_question(), self._teaching.classroom
         if asked is None or isinstance(asked.block, Sketch):
             return ""
         votes = [each for each in asked.votes if each is not None]
         if not votes or any(each.is_open(classroom.now()) for each in votes):
             return ""
-        last = [second or first for first, second in self._notes_here(asked)]
+        last = [second or first for first, second in self._answers_here(asked)]
         given = [each for each in last if each is not None and not is_skipped(each)]
         if not given:
             return ""
@@ -174,18 +172,18 @@ class ClassAnswers:
         key = explain if share < FEW else discuss if share <= MANY else go_on
         return self._words(key, percent=round(100 * share))
 
-    def _first(self) -> AskedFirst | None:
-        """What the displayed step asks first."""
+    def _first_question(self) -> VotedQuestion | None:
+        """What the displayed step of a lesson asks first."""
         name, index = StepsForAll(self._course, self._words.language).shown(self._display)
-        lesson = self._course.lesson(name, self._words.language)
+        asked = asked_at(self._course.lesson(name, self._words.language), index)
+        if name in self._course.tests or not asked:
+            return None
+        item, block = next(iter(asked.items()))
         votes = self._teaching.classroom.votes
-        for item, block in asked_at(lesson, index).items():
-            if name not in self._course.tests:
-                both = tuple(vote_on(votes, name, item, again) for again in (False, True))
-                return AskedFirst(name, item, block, both)
-        return None
+        both = tuple(vote_on(votes, name, item, again) for again in (False, True))
+        return VotedQuestion(name, item, block, both)
 
-    def _notes_here(self, asked: AskedFirst | None) -> list[tuple[Given | None, Given | None]]:
+    def _answers_here(self, asked: VotedQuestion | None) -> list[tuple[Given | None, Given | None]]:
         """Of each student who is here, the first answer that counts, and the one after a
         discussion."""
         students, found = self._students(), list[tuple[Given | None, Given | None]]()
@@ -212,16 +210,14 @@ class ClassAnswers:
         return "".join(views) or page.step_view(step_label(lesson, index, words), "", large)
 
     def closing(self) -> tuple[int | None, str]:
-        """In how many seconds the votes on the displayed step are closed, and that they are.
+        """The seconds until the votes on the displayed step are closed, and a note once they are.
 
-        None: they are open or closed; an empty text: they are not closed.
+        None: no time is set, or it is over; an empty text: they are not closed.
         """
         steps = StepsForAll(self._course, self._words.language)
         name, index = steps.shown(self._display)
-        lesson, classroom = (
-            self._course.lesson(name, self._words.language),
-            self._teaching.classroom,
-        )
+        lesson = self._course.lesson(name, self._words.language)
+        classroom = self._teaching.classroom
         times = [each.closes for each in votes_at(lesson, index, classroom.votes)]
         last = max((inf if each is None else each for each in times), default=inf)
         left = last - classroom.now()

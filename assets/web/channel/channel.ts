@@ -91,7 +91,7 @@ class RowSide implements SideSample {
     readonly pulled: boolean
 
     constructor(
-        private readonly engine: RemoteEngine,
+        private readonly engine: ServerEngine,
         private readonly row: readonly (number | null)[],
         private readonly first: number, // of its numbers
         private readonly p: number,
@@ -131,7 +131,7 @@ class RowSide implements SideSample {
     }
 }
 
-export class RemoteEngine implements Engine {
+export class ServerEngine implements Engine {
     /** What the lab is called and set to; null until it is known. */
     lab: StateMessage | null = null
     route = new SampledPath({ points: [[0, 0], [0, 0]], closed: false, raised: [], right: [1, 0], up: [0, 1] })

@@ -4,7 +4,7 @@
 // lab refuses it for good.
 
 import { made, tell } from "../core/dom"
-import type { RemoteEngine } from "./channel"
+import type { ServerEngine } from "./channel"
 import { sayToViser } from "./kept"
 
 const OPENS = 40_000 // [ms] that a websocket may take to open; viser gives up after 5 s
@@ -41,7 +41,7 @@ export class Connection {
     private heard = 0
 
     /** `picture`: that of the robots, which viser draws; null on a page without it. */
-    constructor(private readonly engine: RemoteEngine, private readonly picture: PictureLink | null) {
+    constructor(private readonly engine: ServerEngine, private readonly picture: PictureLink | null) {
         this.box.setAttribute("role", "status")
         if (picture) sayToViser(() => `${engine.page}.${picture.asked}`)
         for (const event of ["online", "focus", "pageshow"]) addEventListener(event, () => picture?.soon())

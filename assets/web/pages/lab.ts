@@ -6,7 +6,7 @@ import { shown } from "../core/engine"
 import type { FormMessage } from "../core/form_data"
 import { retone } from "../core/ink"
 import { phrase, significant, written, type Texts } from "../core/words"
-import { RemoteEngine } from "../channel/channel"
+import { ServerEngine } from "../channel/channel"
 import type { Command, PageMessage } from "../channel/messages"
 import { Connection, PictureLink } from "../channel/connection"
 import { ClassPanel } from "../parts/class_panel"
@@ -29,7 +29,7 @@ const CHECKED = 250 // [ms] between checks of what viser has put into the page
 const RATES = [0.125, 0.25, 0.5, 1, 2, 4]
 const RESTS = 300 // [ms] for which the canvas keeps its size, until the lab is told of it
 const NUMBERS = 100 // [ms] between changes of the large numbers
-const INVITES = ["hold", "let_go"] // invitations to press the brake
+const INVITES = ["hold", "let_go"] // invitations to press the main button
 const LARGER = 1.7 // scale of charts and lenses for a projector
 const UPRIGHT = matchMedia("(width <= 36em), (aspect-ratio <= 4/5)")
 const PHONE = matchMedia("(width <= 36em)")
@@ -60,7 +60,7 @@ class Face {
     private read = 0
 
     /** `reopen`: what was open before the page got these texts. */
-    constructor(private readonly engine: RemoteEngine, private readonly texts: Texts, reopen = "") {
+    constructor(private readonly engine: ServerEngine, private readonly texts: Texts, reopen = "") {
         const { signal } = this.ended
         const indices = engine.texts.map((_, i) => i)
         this.strip = new Strip(texts, engine, signal, "onpath-rows")
@@ -248,7 +248,7 @@ class Face {
 function showLab(): void {
     const root = document.documentElement
     const scheme = new Scheme()
-    const engine = new RemoteEngine(() => ({ dark: scheme.dark, plain: webgl.plain, upright: UPRIGHT.matches })), connection = new Connection(engine, new PictureLink())
+    const engine = new ServerEngine(() => ({ dark: scheme.dark, plain: webgl.plain, upright: UPRIGHT.matches })), connection = new Connection(engine, new PictureLink())
     let face: Face | null = null
     let words: Texts | null = null, reopen = "", calmed = !matchMedia("(prefers-reduced-motion: reduce)").matches
     root.classList.add("op-loading")
@@ -301,7 +301,7 @@ class Scheme {
         retone()
     }
 
-    check(engine: RemoteEngine): void {
+    check(engine: ServerEngine): void {
         if (this.dark === this.told || !engine.connected || this.pressed) return
         this.told = this.dark
         engine.send({ is: "dark", on: this.dark })

@@ -3,15 +3,13 @@
 import { made, tell } from "../core/dom"
 import type { FormMessage } from "../core/form_data"
 import { phrase, type Texts } from "../core/words"
-import { RemoteEngine } from "../channel/channel"
-import { Connection } from "../channel/connection"
+import { ServerEngine } from "../channel/channel"
 import type { Command, PageMessage } from "../channel/messages"
 import { ClassPanel } from "../parts/class_panel"
 import type { FormHost } from "../parts/fields"
 import { Form } from "../parts/form"
 import { ask } from "../parts/question"
-
-const CHECKED = 250 // [ms] between checks of the connection
+import { openScreen } from "./screen"
 
 class Remote {
     readonly element = made("main", "")
@@ -22,7 +20,7 @@ class Remote {
     private readonly host: FormHost
     private awake: WakeLockSentinel | null = null
 
-    constructor(private readonly engine: RemoteEngine, private readonly texts: Texts) {
+    constructor(private readonly engine: ServerEngine, private readonly texts: Texts) {
         const { settings } = engine
         this.host = {
             texts, value: settings.value, refused: settings.refused, waits: settings.waits,
@@ -78,17 +76,5 @@ class Remote {
     }
 }
 
-const engine = new RemoteEngine(() => ({ dark: false, plain: true, upright: true }), "remote")
-const connection = new Connection(engine, null)
-let remote: Remote | null = null
-const follow = () => {
-    if (engine.ready && !remote) {
-        document.documentElement.classList.remove("op-loading")
-        remote = new Remote(engine, engine.words!)
-        document.body.prepend(remote.element)
-    }
-    connection.check(remote !== null)
-}
-setInterval(follow, CHECKED)
-follow()
-Object.assign(window, { onpathLab: engine }) // for tests
+const engine = new ServerEngine(() => ({ dark: false, plain: true, upright: true }), "remote")
+openScreen(engine, () => new Remote(engine, engine.words!).element)

@@ -1,6 +1,6 @@
 // What stands around the stage of the lab's page: the head, the controls, the search, the keys, and all that opens.
 
-import type { News, RemoteEngine } from "../channel/channel"
+import type { News, ServerEngine } from "../channel/channel"
 import type { Command, Index, PageMessage } from "../channel/messages"
 import { phrase, type Texts } from "../core/words"
 import { ClassSheet } from "../parts/class_sheet"
@@ -52,7 +52,7 @@ export class Shell {
     private leaves = false // whether it leaves the class by itself
 
     /** `reopen`: what was open before the page got its present words. */
-    constructor(private readonly engine: RemoteEngine, private readonly texts: Texts, signal: AbortSignal, reopen: string) {
+    constructor(private readonly engine: ServerEngine, private readonly texts: Texts, signal: AbortSignal, reopen: string) {
         this.header = new Header(texts, place => this.go(place))
         this.panel = new Panel(texts, this.header.controls, signal)
         this.search = new Search(texts, () => this.entries())
@@ -68,8 +68,8 @@ export class Shell {
         this.follow()
         this.sit()
         if (reopen in TITLES && !this.opened) void this.open(reopen as Opens)
-        addEventListener("hashchange", () => this.fetch(), { signal })
-        this.fetch()
+        addEventListener("hashchange", () => this.takeShareCode(), { signal })
+        this.takeShareCode()
     }
 
     get elements(): HTMLElement[] { return [this.header.element, this.panel.element] }
@@ -127,7 +127,7 @@ export class Shell {
     }
 
     /** A share code in the page's address waits in its field to be used. */
-    private fetch(): void {
+    private takeShareCode(): void {
         this.brought = takenShareCode()
         if (this.brought && this.engine.lab!.own) void this.open("keep")
     }

@@ -3,16 +3,13 @@
 
 import { elementsOf, made, tell } from "../core/dom"
 import { projected } from "../core/placing"
-import { RemoteEngine } from "../channel/channel"
-import { Connection } from "../channel/connection"
+import { ServerEngine } from "../channel/channel"
 import type { WallMessage } from "../channel/messages"
 import { Sketch } from "../parts/sketch"
-
-const CHECKED = 250 // [ms] between checks of the connection
+import { openScreen } from "./screen"
 
 class Wall {
     readonly element: HTMLElement
-    private readonly ended = new AbortController()
     private readonly sketch: Sketch
     private readonly names: HTMLElement[]
     private readonly stage: HTMLElement
@@ -21,8 +18,8 @@ class Wall {
     private readonly closing = made("p", "closing")
     private readonly shown = new Map<HTMLElement, string>()
 
-    constructor(private readonly engine: RemoteEngine) {
-        this.sketch = new Sketch(engine, this.ended.signal)
+    constructor(private readonly engine: ServerEngine) {
+        this.sketch = new Sketch(engine, new AbortController().signal)
         this.names = engine.texts.map((_, i) => made("h2", `name side${i}`))
         this.stage = made("section", "robots", this.sketch.element, ...this.names)
         this.closing.role = "timer"
@@ -32,14 +29,9 @@ class Wall {
         engine.on(change => {
             if (change === "class") this.hear(engine.wall!)
             else if (change !== "samples") this.place()
-        }, this.ended.signal)
+        })
         if (engine.wall) this.hear(engine.wall)
         this.draw()
-    }
-
-    end(): void {
-        this.ended.abort()
-        this.element.remove()
     }
 
     private hear({ join, asked, closing, note }: WallMessage): void {
@@ -67,24 +59,10 @@ class Wall {
     }
 
     private draw(): void {
-        if (this.ended.signal.aborted) return
         this.sketch.draw()
         requestAnimationFrame(() => this.draw())
     }
 }
 
-const engine = new RemoteEngine(() => ({ dark: false, plain: true, upright: false }), "wall")
-const connection = new Connection(engine, null)
-let wall: Wall | null = null
-const follow = () => {
-    if (engine.ready && !wall) {
-        document.documentElement.classList.remove("op-loading")
-        wall = new Wall(engine)
-        document.body.prepend(wall.element)
-    }
-    connection.check(wall !== null)
-}
-setInterval(follow, CHECKED)
-engine.on(() => { if (!wall) follow() })
-follow()
-Object.assign(window, { onpathLab: engine }) // for tests
+const engine = new ServerEngine(() => ({ dark: false, plain: true, upright: false }), "wall")
+openScreen(engine, () => new Wall(engine).element)

@@ -8,7 +8,7 @@ import { phrase, type Texts } from "../core/words"
 import type { Verdict } from "../lessons/checks"
 import { noNotes } from "../lessons/notes"
 import type { Result, Student } from "../lessons/student"
-import type { RemoteEngine } from "../channel/channel"
+import type { ServerEngine } from "../channel/channel"
 import type { AnswerCommand } from "../channel/outbox"
 import { Legend } from "./legend"
 import { compared } from "./predictions"
@@ -27,7 +27,7 @@ class RemoteStudent implements Student {
     changed: () => void = () => {}
     verdicts: Record<string, Verdict[]> = {}
 
-    constructor(private readonly engine: RemoteEngine, private readonly page: PageData) {}
+    constructor(private readonly engine: ServerEngine, private readonly page: PageData) {}
 
     goes(): void {}
     sees(): void {}
@@ -77,7 +77,7 @@ export class Column implements Robots {
     private lent: HTMLElement | null = null
     private turned = false // whether a key has turned the page
 
-    constructor(texts: Texts, private readonly engine: RemoteEngine, private readonly isWide: () => boolean,
+    constructor(texts: Texts, private readonly engine: ServerEngine, private readonly isWide: () => boolean,
         light: (symbol: string) => void, ended: AbortSignal) {
         this.page = { words: texts.words, lesson: "", symbols: {}, figures: [], steps: [], lessons: {} }
         this.student = new RemoteStudent(engine, this.page)

@@ -4,7 +4,7 @@ import { made, tell } from "../core/dom"
 import { shown } from "../core/engine"
 import { projected, shares } from "../core/placing"
 import { phrase, written, type Texts } from "../core/words"
-import type { RemoteEngine } from "../channel/channel"
+import type { ServerEngine } from "../channel/channel"
 
 export class OverStage {
     readonly element: HTMLElement
@@ -17,7 +17,7 @@ export class OverStage {
     private height = 0
     private placed = "" // for which places of the robots
 
-    constructor(private readonly engine: RemoteEngine, private readonly texts: Texts, ...drawn: HTMLElement[]) {
+    constructor(private readonly engine: ServerEngine, private readonly texts: Texts, ...drawn: HTMLElement[]) {
         this.titles = engine.texts.map(() => made("h2", "title", made("span", "", made("b", ""), made("small", ""))))
         this.captions = engine.texts.map(() => made("p", "caption", made("span", "")))
         this.sides = engine.texts.map((_, i) => made("div", `side side${i}`, this.titles[i]!, this.captions[i]!))

@@ -1,6 +1,6 @@
 // Shows on the page what is what: a line from each name to its thing, until one presses anywhere.
 
-import type { RemoteEngine } from "../channel/channel"
+import type { ServerEngine } from "../channel/channel"
 import { made, svg } from "../core/dom"
 import { shown, type Vector } from "../core/engine"
 import type { Pixel } from "../core/ink"
@@ -11,7 +11,7 @@ import { pressed } from "./sheet"
 const GAP = 10, AWAY = 56 // [px] between labels, and from a label to its thing
 
 /** Open the names over the page. */
-export function pointAtStage(texts: Texts, engine: RemoteEngine): void {
+export function pointAtStage(texts: Texts, engine: ServerEngine): void {
     const dialog = made("dialog", "op-pointing"), lines = svg("svg", { "aria-hidden": "true" })
     dialog.ariaLabel = phrase(texts, "help.point")
     const labels = Object.entries(places(engine)).flatMap(([name, place]) => {
@@ -36,7 +36,7 @@ export function pointAtStage(texts: Texts, engine: RemoteEngine): void {
 }
 
 /** Where the things are on the page; null if they are not there. */
-function places(engine: RemoteEngine): Record<string, Pixel | null> {
+function places(engine: ServerEngine): Record<string, Pixel | null> {
     const points = engine.path.lines[0] ?? [], sample = shown(engine), [left, right] = [sample.sides[0], sample.sides[1] ?? sample.sides[0]]
     return {
         pull: right ? onStage(engine, right.tip, 1) : null,
@@ -57,7 +57,7 @@ function middleOf(selector: string): Pixel | null {
 }
 
 /** A point of a robot's output space in the picture. */
-function onStage({ cameras }: RemoteEngine, point: Vector, side: number): Pixel | null {
+function onStage({ cameras }: ServerEngine, point: Vector, side: number): Pixel | null {
     const stage = document.querySelector("#op-stage")?.getBoundingClientRect(), camera = cameras[side]
     if (!stage || !camera) return null
     const [x, y] = projected(camera, point)

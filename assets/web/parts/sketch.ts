@@ -3,13 +3,13 @@
 import { shown, type Vector } from "../core/engine"
 import { dashed, disc, Sheet, stroke, tones, type Pixel } from "../core/ink"
 import { projected } from "../core/placing"
-import type { RemoteEngine } from "../channel/channel"
+import type { ServerEngine } from "../channel/channel"
 
 export class Sketch {
     private stale = true
     private readonly sheet = new Sheet(() => (this.stale = true))
 
-    constructor(private readonly engine: RemoteEngine, ended: AbortSignal) {
+    constructor(private readonly engine: ServerEngine, ended: AbortSignal) {
         this.sheet.canvas.className = "sketch"
         this.sheet.canvas.setAttribute("aria-hidden", "true")
         engine.on(() => (this.stale = true), ended)

@@ -5,7 +5,7 @@ import type { Point } from "../core/figure_data"
 import { Sheet, tones } from "../core/ink"
 import { projected } from "../core/placing"
 import { drawShapes, shapesOf } from "../core/symbols"
-import type { RemoteEngine } from "../channel/channel"
+import type { ServerEngine } from "../channel/channel"
 
 export class SymbolOverlay {
     /** The symbol that is shown; may be empty. */
@@ -13,7 +13,7 @@ export class SymbolOverlay {
     private drawn = ""
     private readonly sheet: Sheet
 
-    constructor(private readonly engine: RemoteEngine) {
+    constructor(private readonly engine: ServerEngine) {
         this.sheet = new Sheet(() => {})
         this.sheet.canvas.className = "lit-up"
         this.sheet.canvas.setAttribute("aria-hidden", "true")

@@ -4,7 +4,7 @@
 import { made, tell } from "../core/dom"
 import { shown } from "../core/engine"
 import { phrase, withoutNumbers, type Texts } from "../core/words"
-import type { RemoteEngine } from "../channel/channel"
+import type { ServerEngine } from "../channel/channel"
 import type { Command, StateMessage } from "../channel/messages"
 
 const AGAIN = 8000 // [ms], least time between announcements that differ only in numbers
@@ -45,7 +45,7 @@ export class Voice {
     private returns = false // whether the focus was in the invitation, and comes back with the next one
     private skipped = false
 
-    constructor(private readonly engine: RemoteEngine, private readonly texts: Texts, private readonly isUpright: () => boolean, private readonly ended: AbortSignal) {
+    constructor(private readonly engine: ServerEngine, private readonly texts: Texts, private readonly isUpright: () => boolean, private readonly ended: AbortSignal) {
         const { said, message, messages } = this.lab
         this.element.id = "op-said"
         this.region.id = "op-voice"
@@ -205,7 +205,7 @@ class DistanceTones {
     private voices: { tone: OscillatorNode; gain: GainNode }[] = []
     private due = 0
 
-    constructor(private readonly engine: RemoteEngine, ended: AbortSignal) {
+    constructor(private readonly engine: ServerEngine, ended: AbortSignal) {
         engine.on(() => this.play(), ended)
         for (const press of ["pointerdown", "keydown"]) addEventListener(press, () => this.wake(), { capture: true, signal: ended })
         ended.addEventListener("abort", () => void this.context?.close())

@@ -11,9 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from onpath.app.classroom.classroom import MOST_ASKING, NUMBER_LASTS, Classroom
-from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
-from onpath.app.server.server_options import ServerOptions
 from onpath.app.viser_adapter.addresses import class_address
 from tests.support import waiting
 from tests.support.own_socket import OwnSocket
@@ -58,18 +56,6 @@ def test_a_number_lets_one_page_in_once_within_two_minutes(moves: list[tuple[Any
                 with pytest.raises(ValueError):
                     room.let_in(number)
         assert all(room.is_pass(each) for each in inside) and len(room.state.phones) == len(inside)
-
-
-@pytest.fixture(scope="module")
-def room() -> Classroom:
-    return Classroom()
-
-
-@pytest.fixture(scope="module")
-def server(room: Classroom) -> Iterator[LabServer]:
-    server = LabServer("127.0.0.1", 0, LoopCache(), ServerOptions(classrooms=[room]))
-    yield server
-    server.stop()
 
 
 def address(server: LabServer, room: Classroom) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any, get_args
@@ -19,10 +18,8 @@ from onpath.app.classroom.teaching.class_answers import ClassAnswers
 from onpath.app.classroom.teaching.teacher_context import TeacherChoices
 from onpath.app.lab import commands as c
 from onpath.app.lab.lesson_state import LessonState
-from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.built_in_course import built_in_course
 from onpath.app.server.lab_server import LabServer
-from onpath.app.server.server_options import ServerOptions
 from onpath.app.viser_adapter.addresses import class_address
 from onpath.app.viser_adapter.data_channel import NO_GREETING
 from onpath.lessons.progress import Answer, Notes, Progress, Truth
@@ -41,7 +38,7 @@ NAMES = "Zaphod", "Quirin", "Xanthippe"
 
 
 @dataclass
-class Onlooker:
+class Context:
     classroom: Classroom
     chosen: TeacherChoices = field(default_factory=TeacherChoices)
 
@@ -86,21 +83,9 @@ def classes(draw: st.DrawFn) -> tuple[Classroom, Classroom]:
 def test_before_the_teacher_shows_nothing_on_the_wall_depends_on_the_answers(
     both: tuple[Classroom, Classroom], language: str
 ) -> None:
-    views = [ClassAnswers(COURSE, Words(language), Onlooker(room)) for room in both]
+    views = [ClassAnswers(COURSE, Words(language), Context(room)) for room in both]
     before, after = ((each.view(large=True, silent=True), each.closing()) for each in views)
     assert before == after
-
-
-@pytest.fixture(scope="module")
-def room() -> Classroom:
-    return Classroom()
-
-
-@pytest.fixture(scope="module")
-def server(room: Classroom) -> Iterator[LabServer]:
-    server = LabServer("127.0.0.1", 0, LoopCache(), ServerOptions(classrooms=[room]))
-    yield server
-    server.stop()
 
 
 def address(server: LabServer, room: Classroom) -> str:

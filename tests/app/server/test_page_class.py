@@ -13,26 +13,12 @@ from hypothesis import strategies as st
 from onpath.app.channel.class_messages import Order
 from onpath.app.classroom.classroom import Classroom
 from onpath.app.classroom.teaching.teacher_form import PREFIX
-from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
-from onpath.app.server.server_options import ServerOptions
 from onpath.app.viser_adapter.addresses import class_address
 from tests.support.student import Student
 
 NAMES = ("follow", "name", "setup", "shown", "revealed", "lesson", "step", "picked", "large")
 VALUES = (True, False, 1.0, 2.0, "01-path-or-timetable", "", "<b>")
-
-
-@pytest.fixture(scope="module")
-def room() -> Classroom:
-    return Classroom()
-
-
-@pytest.fixture(scope="module")
-def server(room: Classroom) -> Iterator[LabServer]:
-    server = LabServer("127.0.0.1", 0, LoopCache(), ServerOptions(classrooms=[room]))
-    yield server
-    server.stop()
 
 
 def page(server: LabServer, room: Classroom, shown: str = "") -> Student:

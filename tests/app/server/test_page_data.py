@@ -16,10 +16,8 @@ from websockets.typing import Subprotocol
 
 from onpath.app.classroom.classroom import Classroom
 from onpath.app.common import error_log
-from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.scene.client_scene import ClientScene
 from onpath.app.server.lab_server import LabServer
-from onpath.app.server.server_options import ServerOptions
 from onpath.app.viser_adapter.data_channel import SUBPROTOCOL
 from tests.bench.client_protocol import SEEN, hello
 from tests.bench.simulated_browser import SEES
@@ -29,18 +27,6 @@ from tests.support.student import Student
 
 WAIT = 30.0
 wait_for = partial(waiting.wait_for, seconds=WAIT)
-
-
-@pytest.fixture(scope="module")
-def room() -> Classroom:
-    return Classroom()
-
-
-@pytest.fixture(scope="module")
-def server(room: Classroom) -> Iterator[LabServer]:
-    server = LabServer("127.0.0.1", 0, LoopCache(), ServerOptions(classrooms=[room]))
-    yield server
-    server.stop()
 
 
 class Script:

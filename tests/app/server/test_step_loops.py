@@ -31,7 +31,7 @@ def test_no_student_waits_for_the_loops_of_a_step_that_the_teacher_has_looked_at
     cache = LoopCache(translate=lambda _: translated)
     registry = LabRegistry(SimulationThread(), lambda: new_lab(cache, COURSE))
     loops, step = StepLoops(registry), TakeStep(lesson, 1)
-    lab = registry.made_alone().lab
+    lab = registry.unowned_lab().lab
     step.apply(lab)
     keys = [
         (run.robot, replace(run.kind, free=free))

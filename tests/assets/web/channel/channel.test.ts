@@ -1,12 +1,12 @@
 import "../page"
 import assert from "node:assert/strict"
 import { test } from "node:test"
-import { RemoteEngine } from "../../../../assets/web/channel/channel"
+import { ServerEngine } from "../../../../assets/web/channel/channel"
 import { chance } from "../random"
 
 /** An engine, and what its server says to it. */
-function heard(): { engine: RemoteEngine; say: (message: unknown) => void } {
-    const engine = new RemoteEngine(() => ({ dark: false, plain: false, upright: false }))
+function heard(): { engine: ServerEngine; say: (message: unknown) => void } {
+    const engine = new ServerEngine(() => ({ dark: false, plain: false, upright: false }))
     const say = (message: unknown) => (engine as unknown as { hear(message: unknown): void }).hear(structuredClone(message))
     say(WORDS)
     return { engine, say }

@@ -2,7 +2,7 @@ import "../page"
 import { pass, time } from "../clock"
 import assert from "node:assert/strict"
 import { test } from "node:test"
-import type { RemoteEngine } from "../../../../assets/web/channel/channel"
+import type { ServerEngine } from "../../../../assets/web/channel/channel"
 import { chance } from "../random"
 
 const CHECKED = 100 // [ms] between checks
@@ -36,7 +36,7 @@ function opened(): { wait: (ms: number, jump?: number) => void; worker: FakeWork
         connected: true, isOpen: true, outdated: false, refused: 0, waits: "", page: "a", heard: 0, closed: 0, state: { running: true },
         lab: { rate: 1, achieved: 1, scene: 0 }, open: () => {}, close: () => engine.closed++,
     }
-    const connection = new Connection(engine as unknown as RemoteEngine, new PictureLink())
+    const connection = new Connection(engine as unknown as ServerEngine, new PictureLink())
     new Worker("viser.js").postMessage({ type: "set_server" }) // oxlint-disable-line unicorn/require-post-message-target-origin
     const wait = (ms: number, jump = 0) => {
         date += jump

@@ -1,7 +1,7 @@
 import { TEXTS } from "../page"
 import assert from "node:assert/strict"
 import { test } from "node:test"
-import type { RemoteEngine } from "../../../../assets/web/channel/channel"
+import type { ServerEngine } from "../../../../assets/web/channel/channel"
 import type { LessonMessage } from "../../../../assets/web/channel/messages"
 import { noNotes } from "../../../../assets/web/lessons/notes"
 import { Column } from "../../../../assets/web/parts/column"
@@ -13,7 +13,7 @@ const FIELD = part(2, "<p>What do you see?</p><textarea></textarea><button type=
 
 function opened(): { column: Column; sent: unknown[]; hear: (changes?: Partial<LessonMessage>) => void } {
     const sent: unknown[] = [], ended = new AbortController().signal
-    const engine = { connected: true, path: { lines: [] }, send: (message: unknown) => sent.push(message) } as unknown as RemoteEngine
+    const engine = { connected: true, path: { lines: [] }, send: (message: unknown) => sent.push(message) } as unknown as ServerEngine
     const column = new Column(TEXTS, engine, () => true, () => {}, ended)
     document.body.replaceChildren(column.element)
     let version = 0

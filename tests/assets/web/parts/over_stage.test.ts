@@ -1,7 +1,7 @@
 import { TEXTS } from "../page"
 import assert from "node:assert/strict"
 import { test } from "node:test"
-import type { RemoteEngine } from "../../../../assets/web/channel/channel"
+import type { ServerEngine } from "../../../../assets/web/channel/channel"
 import { OverStage } from "../../../../assets/web/parts/over_stage"
 
 test("the stage says which robot's picture is being made, and covers the one before", () => {
@@ -9,7 +9,7 @@ test("the stage says which robot's picture is being made, and covers the one bef
     const texts = { words: { ...TEXTS.words, point: ".", "stage.building": "{robot} is coming", "stage.paused": "paused" } }
     const lab = { drawn: true, machine: "One", waits: "", above: [0, 0] }, state = { past: null, running: true }
     const camera = [[0, 0, 0], [0, 0, 0], [0, 0, 1]], side = { title: "", name: "", text: "", caption: "" }
-    const engine = { texts: [side, side], cameras: [camera, camera], present: { time: 1, sides: [] }, state, lab } as unknown as RemoteEngine
+    const engine = { texts: [side, side], cameras: [camera, camera], present: { time: 1, sides: [] }, state, lab } as unknown as ServerEngine
     const stage = new OverStage(engine, texts), told = () => stage.element.querySelector("[role=status]")!.textContent
     stage.show()
     assert.equal(told(), "")
