@@ -150,13 +150,17 @@ class ClientScene:
         """Send the frame to the browser."""
         self._channel.send()
 
-    def seen(self, snapshot: PageSnapshot) -> Projection:
-        """How the picture shows the robots, or how it will as soon as its camera is in place."""
-        camera = self.client.camera
-        if self._is_placed and not self.is_outdated:
-            return seen_by(camera, self._scene.stage, self._robot)
-        robot = robot_of(snapshot)
-        stage = stage_of(robot)
+    def seen(self, snapshot: PageSnapshot) -> Projection | None:
+        """How the picture shows the robots, or how it will as soon as its camera is in place.
+
+        Returns:
+            None while the scene is being built.
+        """
+        if self._building or self.is_outdated:
+            return None
+        camera, robot, stage = self.client.camera, self._robot, self._scene.stage
+        if self._is_placed:
+            return seen_by(camera, stage, robot)
         width, height = max(camera.image_width, 1), max(camera.image_height, 1)
         path = snapshot.motion.path.points if self._on_path else None
         pose = view_of(stage, (width, height), _top(height), path)

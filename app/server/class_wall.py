@@ -29,8 +29,7 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.snapshot import Motion, PathSnapshot
 from onpath.app.lab.snapshots.take_snapshot import take_motion, take_page_snapshot
-from onpath.app.scene.projection import seen_at_first
-from onpath.app.scene.stage_catalogue import stage_of
+from onpath.app.server.first_view import FirstView
 from onpath.app.server.lab_registry import LabRegistry
 from onpath.app.server.page_data import BEAT, EVERY, lit_message
 from onpath.app.server.site_address import is_local
@@ -102,6 +101,7 @@ class ClassWall(LabDisplay):
         self._scheduled: ScheduledLab | None = None
         self._source = FrameSource(tells_past=False)
         self._thread, self._computing = WorkThread("wall"), WorkThread("wall's truth")
+        self._first_view = FirstView(self._thread.submit)
         self._answers = dict[str, ClassAnswers]()  # by language
         self._looked = dict[tuple[str, str], WallMessage]()  # by `WallPage.place`
         self._next, self._busy = 0.0, False
@@ -176,8 +176,9 @@ class ClassWall(LabDisplay):
         if monotonic() >= self._next and not self._busy:
             self._next, self._busy = monotonic() + LOOKS, True
             self._thread.submit(partial(self._look, lab))
-        robot = lab.simulation.robot
-        seen = seen_at_first(stage_of(robot), robot)
+        seen = self._first_view.of(lab.simulation.robot)
+        if seen is None:
+            return
         states = {
             language: _silent(state_message(snapshot, Words(language), {}, Said(), seen))
             for language in {each.visit.language for each in self._walls}

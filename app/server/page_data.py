@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections import deque
 from collections.abc import Callable
+from dataclasses import replace
 from datetime import date
 from functools import partial
 from typing import Any
@@ -41,8 +42,7 @@ from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.snapshot import Motion, PathSnapshot
 from onpath.app.scene.client_scene import ClientScene
-from onpath.app.scene.projection import seen_at_first
-from onpath.app.scene.stage_catalogue import stage_of
+from onpath.app.server.first_view import FirstView
 from onpath.app.server.page_class import PageClass, is_of_class
 from onpath.app.server.page_context import PageContext
 from onpath.app.server.page_files import PageFiles
@@ -81,7 +81,7 @@ class PageData:
         self._source, self._opened = FrameSource(), 0
         self._path: PathSnapshot | None = None
         self._robot: Robot | None = None
-        self._view: tuple[Robot, Projection] | None = None  # the robots, with a scene or without
+        self._view: Projection | None = None  # the last one, with a scene or without
         self._language = ""
         self._state: StateMessage | None = None
         self._class: ClassMessage | None = None
@@ -90,6 +90,7 @@ class PageData:
         self._thread = WorkThread("page")
         teaching = context.teaching
         submit, teaches = self._thread.submit, teaching is not None
+        self._first_view = FirstView(submit)
         self._form = PageForm(own.post, submit, context.switches, teaches=teaches)
         self._taught: PageClass | None = None
         if teaching is not None:
@@ -180,9 +181,8 @@ class PageData:
         if self._files.follows and scene is not None:
             self._files.follows = False
             scene.look_at_path()
-        if self._stream.opened != self._opened or self._stream.is_busy:
-            return
-        if not self._stream.is_open:
+        stream, seen = self._stream, self._seen_on(snapshot, scene, robot)
+        if stream.opened != self._opened or stream.is_busy or not stream.is_open or seen is None:
             return
         messages = list[Message]()
         if text.words.language != self._language:
@@ -191,7 +191,7 @@ class PageData:
             self._language = text.words.language
             messages.append(partial(words_message, self._language))
         number = 0 if scene is None else scene.number
-        state = text.state(snapshot, self._seen_on(snapshot, scene, robot), number)
+        state = text.state(snapshot, seen, number)
         if news := changes(state, self._state):
             self._state = state
             messages.append(partial(encoded_changes, StateMessage, news))
@@ -203,7 +203,7 @@ class PageData:
         while self._answers:
             messages.append(partial(encoded, self._answers.popleft()))
         if messages:
-            self._stream.hand_over(*messages)
+            stream.hand_over(*messages)
 
     def _class_now(self, nickname: str) -> ClassMessage:
         context = self._context
@@ -244,13 +244,16 @@ class PageData:
 
     def _seen_on(
         self, snapshot: PageSnapshot, scene: ClientScene | None, robot: Robot
-    ) -> Projection:
-        """How the picture shows the robots, or would, if there is none."""
-        if scene is not None:
-            self._view = robot, scene.seen(snapshot)
-        elif self._view is None or self._view[0] is not robot:
-            self._view = robot, seen_at_first(stage_of(robot), robot)
-        return self._view[1]
+    ) -> Projection | None:
+        """How the picture shows the robots, or would, if there is none.
+
+        While a picture is being built, the one before counts; None if there was none.
+        """
+        seen = self._first_view.of(robot) if scene is None else scene.seen(snapshot)
+        if seen is None and self._view is not None:
+            seen = replace(self._view, drawn=False)
+        self._view = seen
+        return seen
 
     def _answer(self, answer: Struct) -> None:
         """Send an answer with the next messages. Thread-safe."""
