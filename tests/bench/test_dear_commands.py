@@ -24,7 +24,7 @@ SETTLED = 100  # frames of data
 OFF, GAP, ANSWER = 0.05, 0.25, 0.5  # share of simulated time in 2 s; [s]
 OFF_EIGHT, GAP_EIGHT, ANSWER_EIGHT = 0.2, 0.5, 1.0
 """With eight tabs, whose messages are made on the same two cores. The aim is the same as with one;
-measured were 0.11 to 0.14, 0.23 to 0.30 s, and 0.30 to 0.53 s."""
+measured were 0.10 to 0.14, 0.22 to 0.30 s, and 0.30 to 0.53 s."""
 
 
 def test_dear_messages_are_commands_or_too_long() -> None:
