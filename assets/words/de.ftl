@@ -1415,6 +1415,7 @@ stop-singular = der Roboter ist nahe an einer singulären Stellung (zwei Glieder
 stop-limit = der Roboter ist nahe an einer singulären Stellung oder am Ende eines Gelenkwegs: Seine Motoren können die Spitze nicht in jede Richtung bewegen
 stop-joint = das Gelenk { $joint } hat seine Grenze von { $limit } überschritten
 stop-joints = ein Gelenk hat seine Grenze überschritten
+stop-crushed = ein Schlitten ist härter ans Ende seines Wegs gestoßen, als dessen Puffer aushält
 stop-bent = der Balken biegt sich zu weit, obwohl seine Nulldynamik stabil ist: Der Zug ist zu stark, die Regelung zu langsam oder das Modell des Reglers zu falsch
 stop-unstable = der Ausgang ist auf der Bahn, das Innere nicht: instabile Nulldynamik
 stop-bent_or_unstable = der Balken biegt sich zu weit: Seine Nulldynamik ist instabil, der Zug zu stark, die Regelung zu langsam oder das Modell des Reglers zu falsch

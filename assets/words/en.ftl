@@ -1006,6 +1006,7 @@ stop-singular = the robot is close to a singular configuration (two links in one
 stop-limit = the robot is close to a singular configuration or to the end of a joint's travel: its motors cannot move the end-point in every direction
 stop-joint = the joint { $joint } has passed its limit of { $limit }
 stop-joints = a joint has passed its limit
+stop-crushed = a slide has struck the end of its travel harder than its buffer can bear
 stop-bent = the link bends too far although its zero dynamics are stable: the pull is too strong, the control too slow or the controller's model too wrong
 stop-unstable = the output is on the path, the inside is not: unstable zero dynamics
 stop-bent_or_unstable = the link bends too far: its zero dynamics are unstable, the pull is too strong, the control too slow or the controller's model too wrong

@@ -49,7 +49,7 @@ def push(
 ) -> tuple[ca.SX, ca.SX, ca.SX]:
     """All forces on the plant, held constant over the tick.
 
-        τ = B(q) (u + dry friction) + J_h^T (F_hand + F_brake + F_wall)
+        τ = B(q) (u + dry friction) + J_h^T (F_hand + F_brake + F_wall) + ends of the travel
 
     Dry friction acts in the motors, at the rates B^T v. B is taken half a tick ahead, for which the
     control law computed u.
@@ -64,8 +64,9 @@ def push(
     """
     y, y_rate = system.with_rate(system.output)(state["q"], state["v"], settings["plant"])
     middle = state["q"] + settings["dt"] / 2 * state["v"]
+    ends = system.end_forces(state["q"], state["v"])
     if kind.free:
-        return y, ca.SX.zeros(system.p, 1), system.effort(middle, u, settings["plant"])
+        return y, ca.SX.zeros(system.p, 1), ends + system.effort(middle, u, settings["plant"])
     pull = forces.hand(y, y_rate, settings["hand_target"], settings["hand_active"], grip.hand)
     where, active = settings["hold_anchor"], settings["hold_active"]
     brake = forces.hold(y, y_rate, where, settings["hold_tangent"], active, grip.hold)
@@ -83,7 +84,7 @@ def push(
         rates = system.input_rates(state["q"], state["v"], settings["plant"])
         compliance = system.compliance(state["q"], settings["plant"])
         u = u + forces.dry_friction(rates, settings["coulomb"], compliance, settings["dt"])
-    return y, outside, pushed + system.effort(middle, u, settings["plant"])
+    return y, outside, ends + pushed + system.effort(middle, u, settings["plant"])
 
 
 def move(

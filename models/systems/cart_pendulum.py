@@ -35,6 +35,7 @@ from onpath.models.systems.parameter_specs import (
 )
 from onpath.models.systems.parameters import Parameters, own_parameters
 from onpath.models.systems.robots import Robot, RobotEntry
+from onpath.models.systems.slides import buffers, crushed, room
 from onpath.models.systems.system import GRAVITY, MechanicalSystem, mechanical_system
 
 CART, PEN, FRICTION = 0.6, 0.2, 0.5  # [kg]; friction of both slides, [N s/m]
@@ -89,6 +90,7 @@ def equations() -> MechanicalSystem:
         potential_energy=GRAVITY * (pen * q[1] - coupling),
         friction=ca.vertcat(FRICTION * v[:2], pivot * v[2]),
         inputs=2,
+        ends=ca.vertcat(buffers(q[:2], v[:2], TRAVEL), 0),
         output=q[:2],
     )
 
@@ -126,7 +128,8 @@ def cart(pendulum: str) -> Robot:
         skeleton=skeleton,
         home=HOME,
         reach=0.6,
-        regularity=ca.fmin(1, 4 * (1 - ca.mmax(ca.fabs(system.q[:2])) / TRAVEL)),
+        regularity=room(system.q[:2], TRAVEL),
+        stops=(crushed(system.q[:2], TRAVEL),),
         drawing=DRAWING,
     )
 

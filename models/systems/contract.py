@@ -69,6 +69,7 @@ def _shape_faults(entry: RobotEntry) -> Iterator[str]:
         "h(q)": (system.output, (p, 1)),
         "the controlled output": (system.controlled_output, (p, 1)),
         "the energy": (system.energy, (1, 1)),
+        "the force of the buffers": (system.end_forces(system.q, system.v), (n, 1)),
         "inverse(y)": (robot.inverse(ca.SX.sym("y", p)), (n, 1)),
     }
     if robot.regularity is not None:
@@ -102,6 +103,7 @@ def _symbol_faults(entry: RobotEntry) -> Iterator[str]:
         "the controlled output": (system.controlled_output, (q, numbers)),
         "the bias": (system.bias, (q, v, numbers)),
         "the energy": (system.energy, (q, v, numbers)),
+        "the force of the buffers": (ca.SX(0) if system.ends is None else system.ends, (q, v)),
         "the skeleton": (ca.horzcat(bars, joints), (q, exaggeration)),
         "the regularity": (ca.SX(0) if robot.regularity is None else robot.regularity, (q,)),
     }

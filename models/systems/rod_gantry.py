@@ -35,6 +35,7 @@ from onpath.models.systems.parameter_specs import (
 )
 from onpath.models.systems.parameters import Parameters, own_parameters
 from onpath.models.systems.robots import Robot, RobotEntry
+from onpath.models.systems.slides import buffers, crushed, room
 from onpath.models.systems.system import GRAVITY, mechanical_system
 
 BRIDGE, CARRIAGE = 0.4, 0.15  # [kg]; the bridge only moves right
@@ -93,6 +94,7 @@ def rod_gantry() -> Robot:
         potential_energy=GRAVITY * (up * q[1] - moment * cos),
         friction=ca.vertcat(FRICTION * v[:2], pivot * v[2]),
         inputs=2,
+        ends=ca.vertcat(buffers(q[:2], v[:2], TRAVEL), 0),
         output=point(1.0),
         controlled_output=point(alpha),
     )
@@ -125,7 +127,8 @@ def rod_gantry() -> Robot:
         skeleton=skeleton,
         home=HOME,
         reach=0.62,
-        regularity=ca.fmin(1, 4 * (1 - ca.mmax(ca.fabs(q[:2])) / TRAVEL)),
+        regularity=room(q[:2], TRAVEL),
+        stops=(crushed(q[:2], TRAVEL),),
         grip=GRIP,
         drawing=Drawing(
             motors=(0,),

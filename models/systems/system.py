@@ -47,6 +47,8 @@ class MechanicalSystem:
         posture: torques u0(q, v) of which a redundant robot, m > p, takes the part that does not
             move its end-point, (m, 1), see `linearization`; None: zeros.
         strength: torque of each motor per unit of the parameter `torque_limit`, m numbers, [N m].
+        ends: generalized forces of buffers at the ends of its travel, in q and v, (n, 1). They act
+            on the plant, and the controller does not know them. None: there are no buffers.
         n, m, p: numbers of coordinates, inputs and outputs.
     """
 
@@ -69,6 +71,7 @@ class MechanicalSystem:
     strength: tuple[float, ...]
     modes: int = 0
     posture: ca.SX | None = None
+    ends: ca.SX | None = None
     n: int = field(init=False)
     m: int = field(init=False)
     p: int = field(init=False)
@@ -107,6 +110,12 @@ class MechanicalSystem:
         inputs = [self.q, self.parameters]
         return ca.Function("actuation", inputs, [self.actuation])(q, parameters).T @ v
 
+    def end_forces(self, q: ca.SX, v: ca.SX) -> ca.SX:
+        """The generalized forces of the buffers, (n, 1)."""
+        if self.ends is None:
+            return ca.SX(self.n, 1)  # sparse, so that a sum with it has no further operation
+        return ca.Function("ends", [self.q, self.v], [self.ends])(q, v)
+
     def compliance(self, q: ca.SX, parameters: ca.SX) -> ca.SX:
         """B(q)^T M⁻¹ B, (m, m): how `input_rates` change with the inputs."""
         inputs, spread = [self.q, self.parameters], self.actuation.T @ self.input_gain
@@ -137,6 +146,7 @@ def mechanical_system(
     modes: int = 0,
     posture: ca.SX | None = None,
     strength: tuple[float, ...] | None = None,
+    ends: ca.SX | None = None,
 ) -> MechanicalSystem:
     """A system from M, V, friction, B and h.
 
@@ -152,7 +162,7 @@ def mechanical_system(
         actuation: B(q), (n, m), of rank m; None: it selects the first m coordinates.
         controlled_output: (p, 1), [m]; None: h.
         solve: (M, R) -> M⁻¹ R; replace it where M has structure.
-        modes, posture: see `MechanicalSystem`.
+        modes, posture, ends: see `MechanicalSystem`.
         strength: see `MechanicalSystem`; None: 1 N m each.
 
     Raises:
@@ -189,6 +199,7 @@ def mechanical_system(
         modes=modes,
         posture=posture,
         strength=(1.0,) * inputs if strength is None else strength,
+        ends=ends,
     )
 
 

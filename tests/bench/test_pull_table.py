@@ -37,6 +37,6 @@ def test_a_part_of_the_pulls_is_no_worse_than_the_table_says() -> None:
 def test_a_row_of_the_table_is_what_is_drawn() -> None:
     """A row with stops: which runs do stop depends on the last bit, and so on the processor."""
     for rate in cases.drawn(RATES, 1):
-        cell, told = drawn("cart_pendulum", rate), shown()["cart_pendulum", rate]
+        cell, told = drawn("planar_arm", rate), shown()["planar_arm", rate]
         assert told is not None and len(cell.results) == told[1]
         assert abs(cell.stops - told[0]) <= 2
