@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import casadi as ca
 
+from onpath.models.closed_loop.loop_vectors import LoopLayouts
 from onpath.models.control.bend_limit import allowed_turning
 from onpath.models.control.laws.law import PathReference
 from onpath.models.layout import Fields
@@ -20,6 +21,12 @@ def kept_speed(settings: Fields) -> ca.SX:
     interval = settings["hold_ticks"] * settings["dt"]
     limit = allowed_turning(settings["K1"], interval) / settings["turning"]
     return ca.fmin(ca.fmax(settings["speed"] / settings["duration"], -limit), limit)
+
+
+def speed_function(layouts: LoopLayouts) -> ca.Function:
+    """The function settings -> `kept_speed`."""
+    settings, fields = layouts.settings.symbols("settings")
+    return ca.Function("kept_speed", [settings], [kept_speed(fields)])
 
 
 def wanted_speed(state: Fields, settings: Fields) -> tuple[ca.SX, ca.SX]:

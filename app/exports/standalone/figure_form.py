@@ -16,6 +16,7 @@ from onpath.lessons.sides import law_titles
 from onpath.lessons.words import Words
 from onpath.models.control.settable import specs, value_of
 from onpath.models.control.sides import RIGHT, SIDES
+from onpath.models.paths.spline_curves import SplineCurve
 
 
 def figure_form(
@@ -34,6 +35,8 @@ def figure_form(
     for name in figure.sliders:
         field = setting_of(figure, name, words, place)
         fields += with_limit(field) if name == "alpha" and figure.flexes else (field,)
+        if name == "speed" and any(isinstance(each, SplineCurve) for each in figure.paths.values()):
+            fields.append(FormField(name="pace", kind="note", label="", needs=field.needs))
     if "poles" in figure.controls:
         fields.append(FormField(name="poles", kind="note", label=""))
         fields.append(FormField(name="pole_plane", kind="poles", label=words("form.poles")))

@@ -13,6 +13,7 @@ from onpath.app.exports.standalone.loop_variants import loops_of
 from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.page_functions import measurements, page_functions
+from onpath.models.closed_loop.reference_speed import speed_function
 from onpath.models.closed_loop.wasm_loop import Scan, wasm_of
 from onpath.models.paths.curve_fit import control_points
 from onpath.models.paths.curves import Curve
@@ -51,6 +52,8 @@ def figure_module(figure: FigureChoice) -> bytes:
         shown = {**page_functions(figure.machine, kind), **_changes(figure, kernels)}
         shown |= measurements(figure.machine, figure.parameters)
         shown |= drawing_functions(figure, kind)
+        if kind.spline:
+            shown["pace"] = speed_function(kernels[0])
         if not kind.closed:
             shown["beyond"] = beyond_function(figure.machine, kind)
         edited, steps = _editing(figure, kind, kernels)

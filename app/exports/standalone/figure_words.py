@@ -38,6 +38,7 @@ _FILLED = {
     **{f"caption.{kind}": ("mm",) for kind in ("torn_off", "held", "waits", "pulled", "chases")},
     **{f"caption.{kind}": ("mm",) for kind in ("off", "stopped", "returns", "off_bounded")},
     **{f"caption.{kind}": ("mm",) for kind in ("pulled_far", "pulled_bounded")},
+    "design.pace": ("speed",),
     "chart.at": ("time", "values"),
     "lens.name": ("law",),
     "efforts.exceeded": ("joint", "gave", "limit"),

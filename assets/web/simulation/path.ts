@@ -41,7 +41,7 @@ export class Path {
     /** What is ambiguous about the path that is kept: keys of messages. */
     doubts = this.data.doubts
     private progress = 1
-    private known: { parts?: Part<Point>[]; turning?: number } = {}
+    private known: { parts?: Part<Point>[]; steepest?: number; turning?: number } = {}
     /** Control points and curve before an edit, as shown, and as tried. */
     private readonly kept = [this.kernels.put(this.flat), this.kernels.put(this.data.table)] as const
     private readonly shown = [this.kernels.put(this.flat), this.kernels.put(this.data.table)] as const
@@ -144,6 +144,14 @@ export class Path {
     /** The largest turn of the tangent for a radian of θ, along a drawing that has been edited. */
     get turning(): number {
         return (this.known.turning ??= this.mostTurning())
+    }
+
+    /** The largest |σ'| where the pen is down, [m/rad]. */
+    get steepest(): number {
+        const { kernels, data: { dimension } } = this
+        const slope = (values: number) => Math.hypot(...kernels.numbers.subarray(values + dimension, values + 2 * dimension))
+        const drawn = () => [...this.split(this.intervals, slope)].filter(each => !each.raised)
+        return (this.known.steepest ??= Math.max(...drawn().flatMap(each => each.points)))
     }
 
     /** Move a point by a vector in the picture, from where it was before the edit. */

@@ -199,6 +199,13 @@ export class Side {
         return Array.from({ length: count }, (_, i) => this.kernels.pair(this.drawing! + 2 * i))
     }
 
+    /** The largest speed that is wanted along a drawing, [m/s]. */
+    get pace(): number {
+        this.tune()
+        this.call("pace", this.settings, this.result)
+        return Math.abs(this.kernels.numbers[this.result]!) * this.path.steepest
+    }
+
     readonly tip = (): Point => this.point("place", this.seen("y"))
     /** The point that the law aims at. */
     readonly aim = (): Point => this.aimed(this.does().aim)

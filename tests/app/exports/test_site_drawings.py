@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
@@ -20,9 +21,11 @@ from onpath.app.view.label_geometry import label_function
 from onpath.lessons.course import BUILT_IN, read_course
 from onpath.lessons.words import ENGLISH
 from onpath.models.arrays import Array
+from onpath.models.closed_loop.simulation import speed_on
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.robots import Robot
 from tests.support.cases import drawn
+from tests.support.drawings import letters
 from tests.support.node_page import judging_page
 from tests.support.site_scripts import answer_of, needs_node
 
@@ -108,6 +111,63 @@ def test_a_bending_is_drawn_larger_as_in_the_scene() -> None:
     function = ca.Function("larger", [robot.system.q], list(parts))
     wanted = np.concatenate([seen(robot, np.array(part).T) for part in function(q)])
     np.testing.assert_allclose(np.reshape(page["larger"], (-1, 2)), wanted, rtol=0, atol=TENTH)
+
+
+PACE = """
+import { LocalSettings } from "./pages/settings"
+import { Kernels } from "./simulation/kernels"
+import { Simulation } from "./simulation/simulation"
+import { readFileSync } from "node:fs"
+
+const { figure, settings } = JSON.parse(readFileSync(0, "utf8"))
+const simulation = new Simulation(figure, await Kernels.from(figure.module))
+const shown = new LocalSettings(simulation, () => {})
+simulation.choose(1)
+const answers = [shown.value("pace")]
+simulation.choose(0)
+const side = simulation.sides[0], { log } = figure
+for (const values of settings) {
+    simulation.set(values)
+    simulation.advance(1500)
+    let fastest = 0
+    for (let before = null, i = 0; i < 1500; i++) {
+        simulation.advance(4)
+        const row = side.logged(), tip = row.slice(log.y[0], log.y[0] + log.y[1])
+        const way = before ? Math.hypot(...tip.map((each, k) => each - before[k])) : 0
+        before = tip
+        if (!simulation.followed.draws(row[log.theta[0]])) continue
+        fastest = Math.max(fastest, way / (4 * figure.dt))
+    }
+    answers.push([shown.value("pace"), fastest])
+}
+console.log(JSON.stringify(answers))
+"""
+
+
+def test_the_speed_that_is_told_is_the_one_at_which_a_drawing_is_drawn() -> None:
+    """Also where it is limited by bends and K1."""
+    paths = {"letters": letters(), "circle": presets()["circle"].curve}
+    figure = chosen(
+        "five_bar", ("path_following",), paths, sliders=("speed", "K1"), controls=("path",)
+    )
+    settings = [
+        {"speed": 3.0},
+        {"speed": -9.0, "K1": 100.0},
+        {"speed": 20.0, "K1": 100.0},
+    ]
+    data = figure_data(figure, ENGLISH)
+    names = [field["name"] for group in data["form"]["groups"] for field in group["fields"]]
+    assert names[names.index("speed") + 1] == "pace"
+    none, *answers = answer_of(PACE, {"figure": data, "settings": settings})
+    assert none == ""
+    for values, (told, measured) in zip(settings, answers, strict=True):
+        parameters = replace(figure.parameters, **values)
+        theta = letters().sample(4000)
+        slopes = np.linalg.norm(letters().at(theta[letters().draws(theta)], 1), axis=1)
+        speed = 1e3 * abs(speed_on(parameters, letters())) * slopes.max()
+        number = float(re.findall(r"\d+", told)[0])
+        assert number == pytest.approx(speed, abs=1.0)
+        assert 1e3 * measured == pytest.approx(speed, rel=0.05)
 
 
 @pytest.mark.thorough
