@@ -113,6 +113,14 @@ class PageData:
         if self._taught is not None:
             self._taught.close()
 
+    def waits(self, lab: Lab) -> bool:
+        """Whether the page waits to be told of another step of a lesson."""
+        stream, column = self._stream, self._text.column
+        if column is None or not stream.is_open or stream.is_busy or stream.opened != self._opened:
+            return False
+        is_made = bool(column.message) and column.message is not self._lesson
+        return is_made or column.version != lab.lessons.version
+
     def follow(
         self,
         lab: Lab,

@@ -2,21 +2,31 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from threading import Event
 from types import SimpleNamespace
 from typing import Any, cast
 
+import msgspec
+import numpy as np
 import pytest
 
 from onpath.app.lab import commands as c
+from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.page_snapshot import LawPlaces, PageSnapshot
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
+from onpath.app.server.built_in_course import built_in_course
 from onpath.app.server.lab_feed import AT_EASE, LabFeed
+from onpath.app.server.page_context import PageContext
+from onpath.app.server.page_data import PageData
+from onpath.app.server.page_text import PageText
 from onpath.app.simulation.display_rate import STRIDES, is_turn
 from onpath.app.simulation.scheduled_lab import ScheduledLab
+from onpath.app.simulation.slow_updates import SlowUpdates
 from onpath.models.control.settable import changed
 from onpath.models.systems.catalogue import ROBOTS
-from tests.support.lab import FOLLOWER, FRAME, do, new_lab, y
+from tests.support.lab import FOLLOWER, FRAME, do, loop_cache, new_lab, y
 
 FRAMES = 240
 
@@ -44,6 +54,23 @@ class Untold:
     def follow(self, lab: object, drawn: object, is_turn: bool, settle: object) -> None: ...
 
     def tell(self, *what: object) -> None: ...
+
+    def waits(self, lab: object) -> bool:
+        return False
+
+
+class Stream:
+    """Stands in for the connection of a page; notes in which frames it is told of which step."""
+
+    is_open, is_busy, opened = True, False, 1
+
+    def __init__(self) -> None:
+        self.now, self.steps = 0, dict[int, int]()
+
+    def hand_over(self, *messages: Callable[[], bytes]) -> None:
+        for told in (msgspec.json.decode(message()) for message in messages):
+            if told["is"] == "lesson" and told["lesson"]:
+                self.steps.setdefault(told["version"], self.now)
 
 
 def feed_of(data: Any, offset: int, followed: Any = None) -> LabFeed:
@@ -136,6 +163,37 @@ def test_the_data_channel_waits_until_a_lab_that_is_followed_anew_has_been_shown
     feed.refresh(own, 1.0)
     feed.show(own, frame, stride)
     assert told == [own, other]
+
+
+def test_another_step_is_told_as_soon_as_its_message_is_made() -> None:
+    """However long ago the last slow update was."""
+    rng, stream = np.random.default_rng(), Stream()
+    course = built_in_course()
+    lab = Lab(loop_cache(), course=course)
+    text = PageText(course, "")
+    nothing: Any = lambda *_: None  # noqa: E731
+    context = PageContext("", course, 0, nothing, text, nothing, nothing)
+    data = PageData(cast(Any, stream), lab, context, cast(Any, None))
+    scheduled, updates = ScheduledLab(lab), SlowUpdates(lambda: 0.0)
+    scheduled.display = feed_of(data, 0)
+    asked = dict[int, int]()
+    begins = {20: c.OpenLesson(next(iter(course.lessons)))}
+    turns = 20 + np.cumsum(rng.integers(3, 20, 6))
+    commands = begins | {
+        int(turn): c.GoToStep(by=1 if i % 2 else -1) for i, turn in enumerate(turns, 1)
+    }
+    for stream.now in range(max(turns) + 9):
+        if command := commands.get(stream.now):
+            do(lab, command)
+            asked[lab.lessons.version] = stream.now
+        updates.run([scheduled], stream.now, 1.0, AT_EASE)
+        scheduled.show(stream.now, AT_EASE)
+        made = Event()
+        text.submit(made.set)
+        assert made.wait(30.0)
+    assert set(asked) <= set(stream.steps)
+    assert all(stream.steps[version] <= asked[version] + 1 for version in asked)
+    data.close()
 
 
 @pytest.mark.parametrize("name", ["flexible", "five_bar"])
