@@ -155,9 +155,9 @@ def start_state(
         ValueError: the start is out of reach.
     """
     start = _begun(start, curve)
-    q, v = _motion(robot, curve, parameters, start)
+    q, v, theta = _motion(robot, curve, parameters, start)
     state = first_state(robot, layouts, curve, q, v)
-    if (theta := _on_strand(robot, curve, start, q)) is not None:
+    if theta is not None:
         fields = layouts.state.unpack(state)
         fields["theta"][:] = fields["theta_ref"][:] = theta
     return lead(state, layouts, curve, start.clock_offset)
@@ -177,7 +177,7 @@ def check_start(robot: Robot, curve: Curve, parameters: Parameters, start: Start
     z = start.place(curve)
     if not robot.margin(z[None])[0] >= LEAST_MARGIN:
         raise CodedError("error.start_out_of_reach")
-    q, v = _motion(robot, curve, parameters, start)
+    q, v, _ = _motion(robot, curve, parameters, start)
     fault = robot.fault(q[None], v[None], parameters)
     if fault is not None:
         raise CodedError("error.start_not_possible", reason=fault[1])
@@ -185,11 +185,12 @@ def check_start(robot: Robot, curve: Curve, parameters: Parameters, start: Start
 
 def _motion(
     robot: Robot, curve: Curve, parameters: Parameters, start: Start
-) -> tuple[Array, Array]:
-    """Configuration and velocity of a start, each shape (n,)."""
+) -> tuple[Array, Array, float | None]:
+    """Configuration and velocity of a start, each shape (n,), and θ as in `_on_strand`."""
     q = robot.rest(robot.frame.lift(start.place(curve)))
     theta = _on_strand(robot, curve, start, q)
-    return q, velocity_at(robot, parameters, curve, q, start.along, start.across, theta)
+    v = velocity_at(robot, parameters, curve, q, start.along, start.across, theta)
+    return q, v, theta
 
 
 def _on_strand(robot: Robot, curve: Curve, start: Start, q: Array) -> float | None:
@@ -198,5 +199,5 @@ def _on_strand(robot: Robot, curve: Curve, start: Start, q: Array) -> float | No
         return None
     found = closest_parameter(robot.frame, curve, robot.endpoint(q))
     turns = round((found - start.theta) / PERIOD) if curve.closed else 0
-    there, here = curve.arc(np.array([found - turns * PERIOD, start.theta])).tolist()
-    return start.theta if abs(there - here) > NEAR else None
+    away = curve.length_between(found - turns * PERIOD, start.theta)
+    return start.theta if away > NEAR else None

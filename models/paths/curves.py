@@ -181,6 +181,15 @@ class Curve(ABC):
         inner: Array = np.clip(theta, -np.pi, np.pi)
         return np.interp(theta, even, s) + (theta - inner) * speed
 
+    def length_between(self, begin: float, end: float) -> float:
+        """Arc length between two parameters less than a turn apart, [m].
+
+        It is that of straight lines, as many to a turn as in `arc`, and at least one.
+        """
+        pieces = int(np.ceil(4 * self.grid * abs(end - begin) / PERIOD)) or 1
+        points = self.at(np.linspace(begin, end, pieces + 1))
+        return float(np.linalg.norm(np.diff(points, axis=0), axis=-1).sum())
+
     def length(self) -> float:
         """Arc length ∫ |σ'| dθ over [-π, π], [m], from 4 `grid` samples.
 

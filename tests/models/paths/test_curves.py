@@ -272,3 +272,15 @@ def test_a_notebook_shows_a_curve_in_a_line_and_as_a_picture() -> None:
     assert (float(dot.attrib["cx"]), float(dot.attrib["cy"])) == (80.0, -20.0)  # θ = 0
     assert len(curve._repr_svg_()) < 4000
     assert curve._repr_html_() == f"{curve._repr_svg_()}<p>{repr(curve)[1:-1]}</p>"
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_length_between_two_parameters_is_that_of_the_arcs(random_curve, seed):
+    rng, curve = np.random.default_rng(seed), random_curve(seed)
+    begin, end = rng.uniform(-np.pi, np.pi, 2)
+    if curve.closed and seed % 2:  # over the seam
+        begin, end = np.pi - rng.uniform(0, 1), np.pi + rng.uniform(0, 1)
+    along = abs(float(np.diff(curve.arc(np.array([begin, end])))[0]))
+    assert curve.length_between(begin, end) == pytest.approx(along, abs=2e-5)
+    assert curve.length_between(end, begin) == pytest.approx(curve.length_between(begin, end))
+    assert curve.length_between(begin, begin) == 0.0
