@@ -19,6 +19,7 @@ TOPS = ("app", "models", "lessons", "assets")
 # Every folder may import those that stand below it here, and nothing else of the project.
 ORDER = [
     "app.cli",
+    "app.plant",
     "app.notebook",
     "app.server",
     "app.exports",

@@ -11,6 +11,7 @@ import tyro
 from onpath.app.cli.arena import ArenaCommand
 from onpath.app.cli.compare import CompareCommand
 from onpath.app.cli.completion import completion_script
+from onpath.app.cli.control import ControlCommand
 from onpath.app.cli.experiment import ExperimentCommand, ZeroDynamicsCommand
 from onpath.app.cli.export_controller import ExportController
 from onpath.app.cli.export_lesson import ExportLesson
@@ -70,6 +71,7 @@ COMMANDS: Mapping[str, type[Subcommand] | CommandGroup] = {
     "paper": PaperCommand,
     "identify": IdentifyCommand,
     "zero-dynamics": ZeroDynamicsCommand,
+    "control": ControlCommand,
     "names": NamesCommand,
     "lessons": CommandGroup(
         "List, check, play or print the lessons, the built-in ones or your own.",

@@ -18,7 +18,7 @@ from onpath.models.arrays import Array
 from onpath.models.control.laws.own import law_title
 from onpath.models.control.settable import with_values
 from onpath.models.controller.design import Design, design
-from onpath.models.controller.functions import AT_FAULT
+from onpath.models.controller.functions import AT_FAULT, REFUSALS
 from onpath.models.controller.steps import Steps
 from onpath.models.errors import CodedError
 from onpath.models.paths.curves import Curve
@@ -94,12 +94,13 @@ class Controller:
     Attributes:
         design: what it is made of.
         entry: its robot.
+        curve: the path that it follows.
     """
 
     def __init__(self, design: Design, entry: RobotEntry) -> None:
         self.design, self.entry = design, entry
-        self._curve = next(iter(design.paths.values()))
-        settings, table = design.settings(self._curve), self._curve.table()
+        self.curve = next(iter(design.paths.values()))
+        settings, table = design.settings(self.curve), self.curve.table()
         self._steps = Steps(design.functions, settings, table)
 
     def start(
@@ -115,7 +116,7 @@ class Controller:
             ValueError: they have another form.
         """
         place, rate = self._vector("q", q), self._vector("v", np.zeros(self._n) if v is None else v)
-        where = self.design.closest(self._curve, place) if theta is None else theta
+        where = self.design.closest(self.curve, place) if theta is None else theta
         self._steps.start(t, place, rate, where)
 
     def step(self, t: float, q: ArrayLike, v: ArrayLike | None = None) -> Array:
@@ -139,6 +140,22 @@ class Controller:
             self.start(t, place, rate)
         return self._steps.step(t, place, rate)
 
+    def stop(self, reason: str = "stopped") -> None:
+        """Refuse the next steps: their torque is what `at_fault` chose, until `start` is called.
+
+        Args:
+            reason: what `code` and `reason` are to tell: one of `REFUSALS`, such as "late" if no
+                measurement comes.
+
+        Raises:
+            ValueError: it has not been started, or there is no such reason.
+        """
+        if not self._steps.started:
+            raise ValueError("the controller has not been started")
+        if reason not in REFUSALS:
+            raise unknown_name(reason, [*REFUSALS], "reason")
+        self._steps.refuse(reason)
+
     def follow(self, path: GivenPath) -> None:
         """Follow another path from the next step on, from its point closest to the end-point.
 
@@ -152,12 +169,12 @@ class Controller:
         if not (isinstance(path, str) and path in known):
             made = _checked(path, self.design.robot)
             known = self._designed({"path": made}, self.design.parameters).paths
-        self._curve = known.get(str(path), next(iter(known.values())))
-        self._steps.settings = self.design.settings(self._curve)
-        self._steps.table = self._curve.table()
+        self.curve = known.get(str(path), next(iter(known.values())))
+        self._steps.settings = self.design.settings(self.curve)
+        self._steps.table = self.curve.table()
         if self._steps.started:
             fields = self._steps.fields
-            fields["theta"][:] = self.design.closest(self._curve, fields["q"])
+            fields["theta"][:] = self.design.closest(self.curve, fields["q"])
             fields["theta_ref"][:] = fields["theta"]
 
     def set(self, **settings: Any) -> None:
@@ -169,7 +186,7 @@ class Controller:
         check_names(settings, self.entry, controller)
         parameters = with_values(self.design.parameters, settings)
         self.design = self._designed(self.design.paths, parameters)
-        self._steps.settings = self.design.settings(self._curve)
+        self._steps.settings = self.design.settings(self.curve)
 
     @property
     def code(self) -> int:
@@ -183,6 +200,16 @@ class Controller:
         return str(message or "")
 
     @property
+    def interval(self) -> float:
+        """Time between two evaluations of the law, [s]."""
+        return 1 / self.design.parameters.control_rate
+
+    @property
+    def v(self) -> Array:
+        """Velocities in the last step, measured or found, shape (n,), [rad/s]."""
+        return self._steps.fields["v"].copy() if self._steps.started else np.full(self._n, np.nan)
+
+    @property
     def theta(self) -> float:
         """Parameter of the closest point of the path, [rad]."""
         return float(self._steps.fields["theta"][0]) if self._steps.started else np.nan
@@ -190,7 +217,7 @@ class Controller:
     @property
     def draws(self) -> bool:
         """Whether the pen is down: not on a link between two strokes of a drawing."""
-        curve = self._curve
+        curve = self.curve
         return bool(curve.draws(np.array(self.theta)))
 
     @property

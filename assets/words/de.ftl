@@ -1427,6 +1427,7 @@ refused-not_finite = ein Messwert ist keine endliche Zahl
 refused-jump = ein gemessenes Gelenk ist weiter gesprungen, als es sich bewegen kann
 refused-fast = ein Gelenk ist schneller als die Grenze, die dem Regler gesetzt ist
 refused-no_torque = das Regelgesetz ergab eine Zahl, die nicht endlich ist
+refused-stopped = jemand hat ihn angehalten
 efforts-stated = Größte Drehmomente der Motoren laut seiner Datei: { $limits }.
 efforts-exceeded = der Motor von { $joint } gab { $gave }, mehr als die { $limit }, die in der Datei des Roboters stehen; mit einer Motorgrenze von 100 % gibt er nicht mehr
 caution-flexible = Mit { $rate } Regeleingriffen je Sekunde ist der biegsame Roboter auch unberührt nicht stabil: Er wird nach wenigen Sekunden stehen bleiben. Wähle mindestens { $slowest } Hz

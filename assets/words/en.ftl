@@ -1018,6 +1018,7 @@ refused-not_finite = a measured number is not finite
 refused-jump = a measured joint has jumped farther than it can move
 refused-fast = a joint is faster than the limit that was set for the controller
 refused-no_torque = the law gave a number that is not finite
+refused-stopped = somebody has stopped it
 efforts-stated = Largest torques of the motors by its file: { $limits }.
 efforts-exceeded = the motor of { $joint } gave { $gave }, more than the { $limit } that the robot's file states; with a torque limit of 100 % it gives no more
 caution-flexible = With { $rate } control actions a second, the flexible link is not even stable untouched: it will stop within seconds. Choose at least { $slowest } Hz

@@ -34,6 +34,7 @@ from onpath.models.systems.system import MechanicalSystem
 
 AT_FAULT = ("zero", "hold", "damp")
 """What a controller does after it has refused a measurement: no torque, the last one, or -c v."""
+JUMP_TIME = 0.01  # [s] for which a joint may be ahead at its fastest: encoders read in steps
 DAMPING_TIME = 0.1  # [s] in which "damp" slows a motor down to 1/e
 LARGEST = 1e300  # numbers beyond count as not finite
 REFUSALS = {
@@ -44,6 +45,7 @@ REFUSALS = {
     "jump": Message("refused.jump"),
     "fast": Message("refused.fast"),
     "no_torque": Message("refused.no_torque"),
+    "stopped": Message("refused.stopped"),
 }
 """Why steps are refused, with codes from 1 on; those of `Robot.reasons` follow. 0 is none."""
 _CODES = {name: number for number, name in enumerate(REFUSALS, 1)}
@@ -304,7 +306,8 @@ def _code(
     """0, or the reason why the step is refused: the first that applies."""
     system, following = symbols.system, state["next"]
     stop = ca.Function("stop", [system.q, system.v], [stop_code(symbols.robot)])(*measured)
-    farthest = FASTEST_JOINT * settings["dt"] * state["age"]
+    passed = settings["dt"] * state["age"]
+    farthest = ca.fmin(FASTEST_JOINT * passed, settings["fastest"] * (passed + JUMP_TIME))
     jump = ca.mmax(ca.fabs(given["q"] - state["q"])[: system.joints]) > farthest
     checks = [
         (ca.logic_not(now >= ca.fmax(following - 1, 0)), ca.SX(_CODES["time"])),  # or NaN

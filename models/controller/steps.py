@@ -6,7 +6,7 @@ import numpy as np
 
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.buffered import Buffered
-from onpath.models.controller.functions import Functions
+from onpath.models.controller.functions import REFUSALS, Functions
 
 
 class Steps:
@@ -49,6 +49,12 @@ class Steps:
             self._advance(t, none, none, (0.0, 0.0))
         rates, flags = (none, (1.0, 0.0)) if v is None else (v, (1.0, 1.0))
         return self._advance(t, q, rates, flags)
+
+    def refuse(self, reason: str) -> None:
+        """Refuse from the next step on, for one of `REFUSALS`, unless a step has been refused."""
+        code = self.fields["code"]
+        if code[0] == 0:
+            code[:] = [*REFUSALS].index(reason) + 1
 
     def _advance(self, t: float, q: Array, v: Array, has: tuple[float, float]) -> Array:
         sample = np.concatenate([[t], q, v, has])

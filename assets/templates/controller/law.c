@@ -91,6 +91,13 @@ int ${name}_step(${name}_controller *c, double t, const double q[${upper}_COORDI
     return (int)c->state.code;
 }
 
+void ${name}_stop(${name}_controller *c)
+{
+    if (c->state.code == ${upper}_OK) {
+        c->state.code = ${upper}_STOPPED;
+    }
+}
+
 void ${name}_follow(${name}_controller *c, int path)
 {
     if (path < 0 || path >= ${upper}_PATHS) {

@@ -77,6 +77,9 @@ void ${name}_start(${name}_controller *c, double t, const double q[${upper}_COOR
 int ${name}_step(${name}_controller *c, double t, const double q[${upper}_COORDINATES], const double *v,
                  double torque[${upper}_MOTORS]);
 
+/* Refuse all further steps, until ${name}_start: their torque is what at_fault chose. */
+void ${name}_stop(${name}_controller *c);
+
 /* Follow another of the exported paths from the next step on: from its point that is closest to
    the end-point of the last step. */
 void ${name}_follow(${name}_controller *c, int path);

@@ -1,0 +1,131 @@
+"""A controller in a process of its own, and a plant in another that misbehaves."""
+
+from __future__ import annotations
+
+import io
+import re
+import signal
+import socket
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import onpath
+from onpath.app.cli.driving import Driving, write_log
+from onpath.app.common.end_signals import END_SIGNALS
+from onpath.app.plant.controller_process import ControllerPlan, ControllerProcess
+from onpath.app.plant.datagrams import Measured, measurement, torque_in
+from onpath.app.plant.plant_link import PlantReport
+from onpath.assets import asset_path
+from onpath.models.controller.functions import REFUSALS
+from onpath.models.studies.record_file import log_columns, read_records
+from tests.support.checkout import ROOT
+
+pytest.importorskip("mujoco")
+RATE = 50
+CODE = {"0": 0, **{f"`{name.upper()}`": number for number, name in enumerate(REFUSALS, 1)}}
+TABLE = (ROOT / "app" / "plant" / "README.md").read_text("utf-8")
+FAULTS = re.findall(r"^\| `(\w+)` \|.*\| (0|`[A-Z_]+`) \|$", TABLE, re.MULTILINE)
+
+
+@pytest.fixture
+def beside() -> Iterator[ControllerProcess]:
+    pose = {"joint1": 0.6985, "joint2": 1.031, "joint3": 1.007}
+    entry = onpath.robot(asset_path("robots/planar_arm.urdf"), pose=pose)
+    gains = {"K1": 64, "K2": 16, "K3": 100, "speed": 0.5}
+    settings = {"torque_limit": 20.0, "control_rate": RATE, **gains}
+    plan = ControllerPlan(
+        robot=entry,
+        paths=onpath.controller(entry, **settings).design.paths,
+        laws=("path_following",),
+        at_fault="damp",
+        fastest=5.0,
+        settings=settings,
+    )
+    process = ControllerProcess(plan, ("127.0.0.1", 0))
+    yield process
+    process.close()
+
+
+def plant(beside: ControllerProcess, fault: str, rate: int = RATE) -> subprocess.Popen[str]:
+    """An arm in MuJoCo that does something else after a second, for a fifth of a second."""
+    example = [sys.executable, str(asset_path("examples/plant.py")), "--fast", "--rate", str(rate)]
+    given = ["--port", str(beside.address[1]), "--seconds", "1.2", "--at", "1", "--fault", fault]
+    return subprocess.Popen([*example, *given], stdout=subprocess.PIPE, text=True)
+
+
+def ended(beside: ControllerProcess, running: subprocess.Popen[str]) -> PlantReport:
+    """The report once the plant has gone, and the controller has ended."""
+    while True:
+        report = beside.report()
+        if report.code and running.poll() is not None:
+            return report
+
+
+def test_what_does_no_harm_is_ignored(beside: ControllerProcess) -> None:
+    harmless = [fault for fault, code in FAULTS if code == "0"]
+    assert set(harmless) == {"twice", "back", "second"}
+    running = plant(beside, ",".join(harmless))
+    report = ended(beside, running)
+    assert int(running.communicate()[0].split()[-1]) == 0
+    assert (report.repeated, report.foreign) == (20, 10)
+    assert report.answered == 60 and report.code == CODE["`LATE`"]  # since the plant has left
+
+
+@pytest.mark.parametrize(("fault", "code"), [each for each in FAULTS if each[1] != "0"])
+def test_what_the_table_says_ends_it(beside: ControllerProcess, fault: str, code: str) -> None:
+    running = plant(beside, fault)
+    report = ended(beside, running)
+    told = int(running.communicate()[0].split()[-1])
+    assert report.code == CODE[code]
+    assert told == (0 if fault == "die" else CODE[code])
+    assert report.answered == (50 if fault == "die" else 60)
+
+
+@pytest.mark.parametrize("gone", [True, False])
+def test_a_process_that_asks_no_more_is_missed(beside: ControllerProcess, gone: bool) -> None:
+    """The next measurements get the torque for a fault, damping, and the code for it."""
+    place = beside.robot.rest(np.array(beside.robot.home))
+    moving = np.array([0.1, 0.0, 0.0])
+    count, answer = 0, (0, 0, np.zeros(3))
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as arm:
+        arm.connect(beside.address)
+        arm.settimeout(20)
+        if gone:
+            beside._connection.close()
+        while answer[1] == 0 and count < 100_000:
+            count += 1
+            arm.send(measurement(Measured(count, count / RATE, place, moving)))
+            answer = torque_in(arm.recv(2048), 3) or answer
+        while answer[0] != count + 1:
+            arm.send(measurement(Measured(count + 1, (count + 1) / RATE, place, moving)))
+            answer = torque_in(arm.recv(2048), 3) or answer
+    assert answer[1] == CODE["`STOPPED`"] and answer[2][0] < 0
+
+
+def test_what_is_typed_acts_and_the_log_is_that_of_a_real_arm(
+    beside: ControllerProcess,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    tmp_path: Path,
+) -> None:
+    monkeypatch.setattr(sys, "stdin", io.StringIO("K1=49\nbogus=3\npath=circle 0.04\n"))
+    running, driving = plant(beside, "none", 2 * RATE), Driving(beside, "damp")
+    kept = {number: signal.getsignal(number) for number in END_SIGNALS}
+    try:
+        assert driving.run() == 1  # the plant leaves
+    finally:
+        for number, handler in kept.items():
+            signal.signal(number, handler)
+    running.communicate()
+    told = capsys.readouterr()
+    assert "no measurement came" in told.out and "bogus" in told.err
+    assert beside.parameters.K1 == 49 and len(driving.rows) == 120
+    write_log(file := tmp_path / "run.csv", beside.robot, driving.rows)
+    ((_, record),) = read_records(file, beside.robot, log_columns(beside.robot, {"t": "t_s"}, {}))
+    q = np.array(driving.rows)[:, 1:4]
+    assert len(record.q) == 120 and np.allclose([record.q[0], record.q[-1]], [q[0], q[-1]])
