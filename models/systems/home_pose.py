@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import casadi as ca
 import numpy as np
+from numpy.typing import NDArray
 
 from onpath.models.arrays import Array
 from onpath.models.paths.path_checks import LEAST_MARGIN
@@ -82,7 +82,7 @@ def chosen_poses(chain: Chain, axes: tuple[Point, ...], pose: dict[str, float]) 
         if score[within].max(initial=0.0) > WORTH * score[allowed].max():
             kept, allowed = [*kept, name], within
     order = np.flatnonzero(allowed)[np.argsort(-score[allowed], kind="stable")]
-    return [ChosenPose(tried[i], tuple(kept)) for i in _apart(chain, tried, order.tolist())]
+    return [ChosenPose(tried[i], tuple(kept)) for i in _apart(chain, tried, order)]
 
 
 def _seen(chain: Chain, axes: tuple[Point, ...], rows: Array) -> Array:
@@ -97,14 +97,15 @@ def _seen(chain: Chain, axes: tuple[Point, ...], rows: Array) -> Array:
     return Rows([q], ca.vertcat(ca.vec(jacobian), lowest, tip[2], tip[0], pointing[2]))(rows)
 
 
-def _apart(chain: Chain, tried: Array, order: Sequence[int]) -> list[int]:
+def _apart(chain: Chain, tried: Array, order: NDArray[np.intp]) -> list[int]:
     """The first ones of which each differs from those before by `APART` of a joint's travel."""
     low, high = _ends(chain)
-    places, found = (tried - low) / (high - low), list[int]()
-    for i in order[:MOST_SEEN]:
-        if all(np.abs(places[i] - places[k]).max() > APART for k in found):
-            found.append(i)
-    return found[:CANDIDATES]
+    places, left = (tried - low) / (high - low), order[:MOST_SEEN]
+    found = list[int]()
+    while len(left) and len(found) < CANDIDATES:
+        found.append(int(left[0]))
+        left = left[np.abs(places[left] - places[left[0]]).max(axis=1) > APART]
+    return found
 
 
 def _ends(chain: Chain) -> tuple[Array, Array]:
