@@ -44,6 +44,8 @@ MINUTES = {
 """Assumed time for each kind of activity, beyond reading."""
 LINE = 1.0
 """The same for each line of a derivation."""
+PAGE = 300
+"""Most words of a page that is read in one go."""
 FOLDED = re.compile(r"<details>.*?</details>", re.DOTALL)
 TAG = re.compile(r"<[^>]*>")
 
@@ -67,6 +69,26 @@ def word_count(html: str) -> int:
     """Number of words of an HTML text, without its folded parts."""
     words = unescape(TAG.sub(" ", FOLDED.sub(" ", html))).split()
     return sum(any(letter.isalnum() for letter in word) for word in words)
+
+
+def page_words(step: Step) -> int:
+    """Number of words that a step shows before anything is answered, without its folded parts."""
+    return sum(map(word_count, [step.watch, *(text for b in step.blocks for text in _shown(b))]))
+
+
+def _shown(block: Block) -> list[str]:
+    if isinstance(block, Text):
+        return [block.html]
+    if isinstance(block, Task):
+        return [block.text]
+    options = block.options if isinstance(block, Choice | Quiz) else ()
+    return [block.question, *(option.text for option in options)]
+
+
+def long_pages(lesson: Lesson) -> list[tuple[Step, int]]:
+    """The steps with more words than `PAGE`, and how many they have."""
+    counted = [(step, page_words(step)) for step in lesson.steps]
+    return [(step, words) for step, words in counted if words > PAGE]
 
 
 def step_minutes(step: Step) -> Minutes:

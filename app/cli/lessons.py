@@ -56,7 +56,7 @@ class CheckLessons:
         from onpath.lessons.course import BUILT_IN, read_folder
 
         course, problems, folder = read_folder(self.folder or BUILT_IN)
-        print(rates_table(course), end="")
+        print(rates_table(course) + long_pages_list(course), end="")
         if not problems:
             loop_cache = LoopCache(at_once=True)
             problems = list(play_course(course, folder, loop_cache))
@@ -134,6 +134,19 @@ def rates_table(course: Course) -> str:
         row = (f"{cells.get((strategy, group), ''):>17s}" for group in groups)
         lines.append(" ".join([f"{strategy:14s}", *row]))
     return "\n".join(lines) + "\n"
+
+
+def long_pages_list(course: Course) -> str:
+    """One line for each page with more words than are read in one go."""
+    from onpath.lessons.minutes import PAGE, long_pages
+
+    return "".join(
+        f"note: {name}/{language}.md:{step.line}: {step.title!r} has {words} words; more than"
+        f" {PAGE} want a page of their own or a fold\n"
+        for name, versions in course.lessons.items()
+        for language, lesson in versions.items()
+        for step, words in long_pages(lesson)
+    )
 
 
 def _count(number: int, what: str) -> str:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from onpath.app.cli.lessons import long_pages_list
 from onpath.app.cli.main import run_command
 from onpath.app.lab.lesson_state import LessonState
 from onpath.app.view.lessons import lesson_card
@@ -13,16 +14,20 @@ from onpath.lessons.course import read_course
 from onpath.lessons.formulas import to_html
 from onpath.lessons.minutes import (
     MINUTES,
+    PAGE,
     WORDS,
     Minutes,
     lesson_minutes,
+    long_pages,
     optional_minutes,
+    page_words,
     required_minutes,
     step_minutes,
     together,
     word_count,
 )
 from onpath.lessons.parse import read_lesson
+from tests.support.built_in import built_in_course
 from tests.support.lesson_texts import LESSON, write_lesson
 
 BEFORE = "Which one *waits*?"
@@ -94,3 +99,23 @@ def test_optional_steps_are_counted_apart(
     assert [line.endswith(" optional") for line in lines[2:]] == [
         step.optional for step in lesson.steps
     ]
+
+
+@pytest.mark.parametrize("over", [False, True])
+def test_a_page_of_more_than_300_words_is_noted_unless_they_are_folded(
+    tmp_path: Path, over: bool
+) -> None:
+    first = read_lesson(write_lesson(tmp_path, LESSON)).steps[0]
+    more = "word " * (PAGE - page_words(first) + over)
+    folded = f"\n\n```fold More\n{'word ' * PAGE}\n```\n\n"
+    write_lesson(tmp_path, LESSON.replace(BEFORE, f"{more}{folded}{BEFORE}", 1))
+    course, found = read_course([tmp_path])
+    assert found == []
+    noted = long_pages_list(course).splitlines()
+    assert [f"{PAGE + 1} words" in line for line in noted] == [True] * over
+
+
+def test_the_built_in_pages_have_at_most_300_words() -> None:
+    course, _ = built_in_course()
+    versions = [lesson for each in course.lessons.values() for lesson in each.values()]
+    assert [(lesson.name, found) for lesson in versions if (found := long_pages(lesson))] == []
