@@ -7,6 +7,7 @@ import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from string import ascii_lowercase
 from typing import Any
 
 import msgspec
@@ -109,7 +110,7 @@ def read_course(
         first: a course to which these are added.
     """
     lessons, routes, tests = dict(first.lessons), first.routes, first.tests
-    problems: list[Problem] = []
+    homes, problems = dict[str, Path](), list[Problem]()
     for folder in folders:
         found = sorted(
             {file.parent for file in folder.glob("[!.]*/[!.]*.md") if file.stem != "README"}
@@ -129,11 +130,33 @@ def read_course(
             elif versions and home.name in lessons:
                 problems.append(Problem(str(home), 1, f"a second lesson {home.name!r}"))
             elif versions:
-                lessons[home.name] = versions
+                lessons[home.name], homes[home.name] = versions, home
         problems += _folder_faults(folder, found)
         read = read_routes(folder, lessons)
         routes, problems = {**read.routes, **routes}, problems + read.problems
-    return Course(lessons, routes, tests), sorted(problems)
+    course = Course(lessons, routes, tests)
+    problems += _warm_up_faults(course, homes)
+    return course, sorted(problems)
+
+
+def _warm_up_faults(course: Course, homes: Mapping[str, Path]) -> Iterator[Problem]:
+    """Warm-up questions that are not drawn from a lesson at least two back.
+
+    Args:
+        homes: lesson -> its folder, of the lessons that are checked.
+    """
+    counts = {
+        name: int(number.rstrip(ascii_lowercase)) for name, number in course.numbers().items()
+    }
+    for name, home in homes.items():
+        for language, lesson in course.lessons[name].items():
+            for step in lesson.steps:
+                for quiz in (block for block in step.blocks if isinstance(block, Quiz)):
+                    drawn = quiz.warm_up
+                    if drawn and counts.get(drawn, counts[name]) > counts[name] - 2:
+                        text = f"warm_up = {drawn!r}: no lesson at least two before this one"
+                        file = str(home / f"{language}.md")
+                        yield Problem(file, step.line, text + near(drawn, list(counts)))
 
 
 def _folder_faults(folder: Path, lessons: Sequence[Path]) -> Iterator[Problem]:
@@ -353,6 +376,7 @@ def _asked(step: Step) -> dict[str, object]:
             if isinstance(b, Derivation)
         ],
         "misconceptions": [bool(b.misconception) for b in blocks if isinstance(b, Quiz)],
+        "warm-up questions": [b.warm_up for b in blocks if isinstance(b, Quiz)],
         f"texts ({', '.join(NOTES)})": [
             tuple(bool(getattr(b, name, "")) for name in NOTES) for b in step.blocks
         ],

@@ -88,11 +88,13 @@ class Quiz(Data, frozen=True):
 
     Attributes:
         misconception: for the teacher, the false belief that a question of the test targets.
+        warm_up: the earlier lesson from which it is drawn; such a question counts nothing.
     """
 
     question: str
     options: tuple[Option, ...]
     misconception: str = ""
+    warm_up: str = ""
 
 
 class WrongNumber(Data, frozen=True):

@@ -84,9 +84,9 @@ def class_record(
     "open" (neither), "passed" (a task), or "unknown" (the options have changed since). `right` is 1
     or 0; `chosen` and `reason` are the letters of options; `value` is a number, and `text` the
     student's own words, or the rows of a derivation, which is right if each line was so at once.
-    `hints` is the number of a task's hints that were shown. `right` is empty for a task that is
-    meant to be found by trying, and so counts nothing. The sheet Sketches has the points of drawn
-    curves, in the units of their axes.
+    `hints` is the number of a task's hints that were shown. `right` is empty for what counts
+    nothing: a task that is meant to be found by trying, and a warm-up question. The sheet Sketches
+    has the points of drawn curves, in the units of their axes.
 
     Args:
         made: time of the record, in UTC.
@@ -245,7 +245,8 @@ def _answered(block: Block, item: str, given: Given | None, notes: Notes) -> Row
         }
     if isinstance(block, Quiz) and given.answer is not None:
         is_lost = given.answer.option is None and item in notes.unknown
-        return _unknown() if is_lost else _chosen(block, given.answer.option)
+        row = _unknown() if is_lost else _chosen(block, given.answer.option)
+        return row | {"right": ""} if block.warm_up else row
     if isinstance(block, Derivation) and given.text:
         right = all(state.good for state in judged(block, given.text))
         return {"result": "answered", "right": int(right), "text": given.text}

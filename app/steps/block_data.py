@@ -38,6 +38,8 @@ def block_data(part: StepPart, lesson: Lesson, index: int, words: Words) -> dict
         data |= derivation_data(block, part.states)
     elif isinstance(block, Task):
         data["limits"] = limits_data(block, lesson.laws_shown(index), words)
+    if isinstance(block, Quiz) and block.warm_up:
+        data["uncounted"] = True
     return data
 
 

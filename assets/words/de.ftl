@@ -79,6 +79,7 @@ lesson-lessons = Lektionen
 lesson-choose = Lektionen: vorhersagen, probieren, sehen, verstehen
 lesson-minutes = { $minutes } min
 lesson-minutes_optional = und { $minutes } min freiwillig
+lesson-warm_up = Aus einer früheren Lektion, zählt nicht
 lesson-optional = freiwillig
 lesson-branch = zu deiner Antwort
 lesson-past_optional = Die freiwilligen Schritte überspringen, zu Schritt { $step }

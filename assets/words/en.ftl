@@ -82,6 +82,7 @@ lesson-choose = Lessons: predict, try, see, explain
 lesson-minutes = { $minutes } min
 lesson-minutes_optional = and { $minutes } min optional
 lesson-optional = optional
+lesson-warm_up = From an earlier lesson, and not counted
 lesson-branch = for your answer
 lesson-past_optional = Skip the optional steps, to step { $step }
 lesson-past_all = Skip the optional steps and finish

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
+import tempfile
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -20,10 +21,17 @@ from onpath.app.exports.report import report
 from onpath.app.lab import commands as c
 from onpath.app.lab.answers import kept_text
 from onpath.app.lab.lab import Lab
-from onpath.lessons.course import Course, read_course
+from onpath.lessons.course import Course, read_course, read_versions
 from onpath.lessons.parse import read_lesson
 from onpath.lessons.problems import LessonError
-from onpath.lessons.progress import MOST_TEXT, SURENESS, Answer, read_progress
+from onpath.lessons.progress import (
+    MOST_TEXT,
+    SURENESS,
+    Answer,
+    Notes,
+    Progress,
+    read_progress,
+)
 from onpath.lessons.schema import Choice, NumberQuestion, Quiz
 from onpath.lessons.words import ENGLISH
 from onpath.models.errors import CodedError
@@ -233,3 +241,53 @@ def test_no_answer_begins_with_what_the_page_says_before_it(language: str) -> No
     ]
     verdict = re.compile(r"(Yes|No|Right|Wrong|Ja|Nein|Richtig|Falsch)[.,]")
     assert len(told) > 100 and [text for text in told if verdict.match(text)] == []
+
+
+WARM_UP = """```quiz
+warm_up = "{drawn}"
+question = "What was that?"
+options = [
+  {{ text = "This", right = true, answer = "Yes." }},
+  {{ text = "That", answer = "No." }},
+]
+```
+"""
+WARM_UP_NO_MORE = WARM_UP.replace('warm_up = "{drawn}"\n', "").format()
+LESSONS = ("01-a", "01b-a", "02-a", "03-a", "03b-a", "10-a")
+
+
+@given(st.sampled_from(LESSONS), st.sampled_from([*LESSONS, "04-a"]))
+@settings(max_examples=10)
+def test_a_warm_up_question_is_drawn_from_a_lesson_at_least_two_back(at: str, drawn: str) -> None:
+    with tempfile.TemporaryDirectory() as folder:
+        for name in LESSONS:
+            more = WARM_UP.format(drawn=drawn) if name == at else ""
+            write_lesson(Path(folder), f"{LESSON}{more}", name=name)
+        _, problems = read_course([Path(folder)])
+    numbers = {name: int(re.findall(r"\d+", name)[0]) for name in LESSONS}
+    counts = {name: i for i, name in enumerate(dict.fromkeys(numbers.values()), 1)}
+    back = counts[numbers[at]] - counts[numbers[drawn]] if drawn in numbers else 0
+    assert [drawn in each.text for each in problems] == [True] * (back < 2)
+
+
+def test_each_lesson_from_the_third_on_begins_with_two_warm_up_questions() -> None:
+    course, problems = built_in_course()
+    assert problems == []
+    for name, number in course.numbers().items():
+        first, *rest = course.lesson(name, "en").steps
+        asked = [block for block in first.blocks if isinstance(block, Quiz)]
+        late = int(number.rstrip("b")) >= 3
+        assert [bool(block.warm_up) for block in asked] == [True, True] * late, name
+        assert not any(b.warm_up for step in rest for b in step.blocks if isinstance(b, Quiz))
+
+
+@pytest.mark.parametrize("drawn", ["", "01-a"])
+def test_a_warm_up_question_counts_nothing_in_the_record(tmp_path: Path, drawn: str) -> None:
+    write_lesson(tmp_path, LESSON + (WARM_UP.format(drawn=drawn) if drawn else WARM_UP_NO_MORE))
+    versions, _ = read_versions(tmp_path / "01-a")
+    course = Course({"01-a": versions})
+    at = f"{len(versions['en'].steps) - 1}.{len(versions['en'].steps[-1].blocks) - 1}"
+    progress = Progress(notes={"01-a": Notes(quiz={at: 0})})
+    rows = record([Member(1, "Ann", progress)], course)["Answers"]
+    (row,) = [row for row in rows if row["result"] == "answered"]
+    assert row["chosen"] == "A" and row["right"] == ("" if drawn else 1)

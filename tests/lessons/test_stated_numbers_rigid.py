@@ -173,7 +173,7 @@ def test_pull_across_moves_both_alike() -> None:
 
 
 def test_a_path_alone_asks_for_no_speed() -> None:
-    (gain,) = said("05", "With K5 = #, a follower at rest stays at rest on the path,")
+    (gain,) = said("05", "says somebody, and sets K5 = #. The follower starts on the path")
     alone = play(3.0, [], K5=value(gain))["follower"]
     assert np.abs(alone.rate).max() < 1e-6 and alone.distance.max() < 1e-6
 

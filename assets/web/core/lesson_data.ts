@@ -177,7 +177,7 @@ export type BlockData =
     // Links have actions: those above on a page without a server, those of channel/messages.ts in the lab.
     | { kind: "text"; links: (unknown[] | null)[]; when?: [string, number[]] }
     // A lab keeps what is right to itself until there is an answer, and while the class votes.
-    | { kind: "choice" | "quiz"; right?: number; voted?: boolean }
+    | { kind: "choice" | "quiz"; right?: number; voted?: boolean; uncounted?: boolean }
     | { kind: "number"; number?: number; tolerance?: number; wrong?: number[]; voted?: boolean }
     | { kind: "open" }
     | DerivationData

@@ -15,6 +15,7 @@ export function gradeOf(steps: StepData[], notes: Notes): Grade {
         parts.push(i < notes.seen)
         if (step.script) parts.push(notes.played[String(i)] === true)
         step.blocks.forEach((block, j) => {
+            if ("uncounted" in block && block.uncounted) return
             const key = `${i}.${j}`
             const first = notes.first[key] ?? notes.quiz[key] ?? notes.numbers[key]
             const judged = (done: boolean, good: boolean) => {
