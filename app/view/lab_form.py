@@ -70,14 +70,14 @@ PULLS = ("path's plane", "horizontal plane")
 NO_STEP = FormMessage(place="step", groups=())
 GROUPS: Mapping[str, Literal["first", "deeper"]] = {
     "setup": "first",
-    **dict.fromkeys(("hand", "gains", "along", "reality", "view", "robot"), "deeper"),
+    **dict.fromkeys(("hand", "gains", "reality", "view", "robot"), "deeper"),
 }
 """Groups of the form in their order, with their levels."""
 GROUP_OF = {
     **dict.fromkeys(("touch", "wall", "start"), "hand"),
     **dict.fromkeys(("basic", "robot", "path"), "robot"),
     "gains": "gains",
-    "task": "along",
+    "task": "gains",
     "realism": "reality",
     "view": "view",
 }
@@ -86,15 +86,15 @@ GROUP_OF_OTHERS = {
     **dict.fromkeys(("pulse", "reset", "start_on_path", "show_start", "wall_forces"), "hand"),
     **dict.fromkeys(("alpha_note", "deflection", "pull", "show_tips"), "robot"),
     **dict.fromkeys(("poles", "pole_plane", "defaults"), "gains"),
-    **dict.fromkeys(("add", "remove", "point", "point_z1", "point_z2", "least_rank"), "along"),
+    **dict.fromkeys(("file", "add", "remove", "point", "point_z1", "point_z2"), "gains"),
+    "least_rank": "gains",
     "identify": "reality",
     **dict.fromkeys((*DRAWINGS, "tube_sizes", "rank_scale", "show_zone", "view"), "view"),
 }
 """Group of each field that is no declared setting."""
 FIRST = (
-    *("robot", "path", "draw", "file", "undo", "redo", "speed", "pace"),
+    *("robot", "path", "draw", "undo", "redo", "speed", "pace"),
     *(f"{part}{side}" for side in SIDES for part in ("", "typed_", "about_")),
-    *("compare", "keep"),
 )
 """Fields that are seen at once, in their order."""
 SECTIONS = {
@@ -111,7 +111,6 @@ SECTIONS = {
 STATES = {
     "hand": ("copy", "hold_direction", "wall"),
     "gains": ("K1", "K2", "K5"),
-    "along": ("speed_profile", "task"),
 }
 """Fields whose values a closed group shows."""
 CONTROLS = {
@@ -245,7 +244,9 @@ def _lab_form(lab: _Lab, words: Words) -> FormMessage:
     groups["setup"] = [fields[name] for name in FIRST if name in fields]
     for name, field in fields.items():
         if name not in FIRST:
-            groups[_group_of(name, lab.robot)].append(field)
+            section = _section_of(name, lab.robot)
+            titled = structs.replace(field, section=words(section)) if section else field
+            groups[_group_of(name, lab.robot)].append(titled)
     reality = [each.name for each in groups["reality"] if each.on is not None]
     states = {**STATES, "reality": tuple(reality)}
     return FormMessage(
@@ -303,6 +304,14 @@ def _group_of(name: str, robot: str) -> str:
     return GROUP_OF.get(spec.group, "robot")
 
 
+def _section_of(name: str, robot: str) -> str:
+    """The key of a heading that a field has in the lab only, not in a step; or empty."""
+    known = specs(ROBOTS[robot].parameters)
+    if name in known and known[name].group == "task":
+        return "form.section_motion"
+    return "form.section_points" if name == "file" else ""
+
+
 def _fields(lab: _Lab, marks: Mapping[str, FieldValue], words: Words) -> dict[str, FormField]:
     """All fields that a lab can have, by name, in the order of the form."""
     entry = ROBOTS[lab.robot]
@@ -327,13 +336,10 @@ def _fields(lab: _Lab, marks: Mapping[str, FieldValue], words: Words) -> dict[st
             help=words("design.draw_hint"),
             act={"is": "freehand"},
         ),
-        _button("file", words("setup.file"), help=words("setup.file_hint")),
         _button("undo", words("design.undo"), Undo(), needs="can_undo"),
         _button("redo", words("design.redo"), Redo(), needs="can_redo"),
         FormField(name="pace", kind="note", label=""),
         *_law_fields(robot, chosen, words),
-        _button("compare", words("setup.compare")),
-        _button("keep", words("keep.title")),
     ]
     for name in settings_in_form(kind, chosen.values()):
         spec, default = (
@@ -374,6 +380,7 @@ def _fields(lab: _Lab, marks: Mapping[str, FieldValue], words: Words) -> dict[st
         FormField(name="poles", kind="note", label=""),
         FormField(name="pole_plane", kind="poles", label=words("form.poles")),
         _button("defaults", words("gains.defaults"), ResetParameters()),
+        _button("file", words("setup.file"), help=words("setup.file_hint")),
         *_point_fields(robot, lab.points, words),
         _button("identify", words("gains.identify"), Identify(), words("gains.identify_hint")),
         *_drawing_fields(words),

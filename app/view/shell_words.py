@@ -18,7 +18,7 @@ SHEETS = (
 )
 KINDS = ("open", "robot", "law", "path", "lesson", "key")
 SHELL = (
-    *("lesson.controls", "controls.help", "panel.handle"),
+    *("lesson.controls", "controls.help", "panel.handle", "head.more"),
     *("search.title", "search.hint", "search.found", "search.none"),
     *(f"search.kind_{kind}" for kind in KINDS),
     *(f"search.of_{sheet}" for sheet in SHEETS),

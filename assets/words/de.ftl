@@ -1730,8 +1730,7 @@ form-poles = Die Pole der Gesetze in der komplexen Ebene. Links der Achse klingt
 form-use = Verwenden
 form-group_setup = Aufbau
 form-group_hand = Hand und Bremse
-form-group_gains = Verstärkungen
-form-group_along = Bahn und Bewegung
+form-group_gains = Verstärkungen und Bahn
 form-group_reality = Wirklichkeit
 form-group_view = Ansicht
 form-group_robot = Dieser Roboter
@@ -1741,6 +1740,7 @@ form-section_sensors = Sensoren
 form-section_friction = Reibung
 form-section_computer = Rechner
 form-section_load = Last
+form-section_motion = Bewegung längs der Bahn
 form-section_points = Kontrollpunkte
 form-section_model = Fehler des Modells
 
@@ -2050,6 +2050,7 @@ arena-written = geschrieben: { $html } und { $csv }
 question-yes = Ja
 question-no = Nein
 panel-handle = Einstellungen: halbe oder ganze Höhe
+head-more = Mehr
 search-title = Suche
 search-hint = Einstellung, Roboter, Regelung, Bahn, Lektion oder Taste
 search-found = Gefunden
@@ -2129,7 +2130,6 @@ compare-curves = Abstand zur Bahn über der Zeit, wo jede Regelung am schlechtes
 setup-draw = Zeichnen
 setup-file = Datei…
 setup-file_hint = Eine Zeichnung (SVG), Punkte (CSV) oder G-Code. Alle Linien werden nacheinander gezeichnet.
-setup-compare = Gesetze vergleichen…
 
 ## Was an einem Roboter aus einer Datei geschätzt ist
 

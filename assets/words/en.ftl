@@ -1313,8 +1313,7 @@ form-poles = The poles of the laws in the complex plane. Left of the axis a moti
 form-use = Use
 form-group_setup = Set-up
 form-group_hand = Hand and brake
-form-group_gains = Gains
-form-group_along = Path and motion
+form-group_gains = Gains and path
 form-group_reality = Reality
 form-group_view = View
 form-group_robot = This robot
@@ -1324,6 +1323,7 @@ form-section_sensors = Sensors
 form-section_friction = Friction
 form-section_computer = Computer
 form-section_load = Load
+form-section_motion = Motion along the path
 form-section_points = Control points
 form-section_model = Errors of the model
 
@@ -1633,6 +1633,7 @@ arena-written = written: { $html } and { $csv }
 question-yes = Yes
 question-no = No
 panel-handle = Controls: to half or all of the height
+head-more = More
 search-title = Search
 search-hint = A setting, robot, law, path, lesson or key
 search-found = What was found
@@ -1712,7 +1713,6 @@ compare-curves = Distance to the path over time, where each law is worst. Grey: 
 setup-draw = Draw
 setup-file = File…
 setup-file_hint = A drawing (SVG), points (CSV) or G-code. All its lines are drawn, one after the other.
-setup-compare = Compare laws…
 
 ## What is guessed about a robot from a file
 

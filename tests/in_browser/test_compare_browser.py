@@ -22,7 +22,7 @@ TABLE = "table:has-text('largest force')"
 def test_laws_are_compared_while_the_lab_goes_on(browser: Browser, server: LabServer) -> None:
     context = browser.new_context(viewport={"width": 1280, "height": 800})
     tab = Tab(server, context, draws=False)
-    tab.press("Compare laws…")
+    tab.more("Compare laws")
     tab.button("Compare").click()
     before = tab.simulation.time
     rows = tab.page.locator(f"{TABLE} tbody tr")
@@ -36,7 +36,7 @@ def test_laws_are_compared_while_the_lab_goes_on(browser: Browser, server: LabSe
 
     tab.page.keyboard.press("Escape")
     tab.ask(c.TypeLaw(RIGHT, TYPED))
-    tab.press("Compare laws…")
+    tab.more("Compare laws")
     own = tab.page.get_by_role("checkbox", name="Own law", exact=True)
     own.check(timeout=20_000)
     tab.press("Compare")

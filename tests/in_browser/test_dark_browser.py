@@ -137,7 +137,7 @@ def test_letters_in_the_scene_follow_the_users_own_look(
     tab = visit(browser, server, draws=True, scheme="light")
     tab.page.evaluate(LETTERS)
     tab.switch("Labels, axes").check()
-    tab.page.get_by_role("button", name="Language, display").click()
+    tab.more("Language, display")
     look = tab.page.get_by_role("combobox", name="Look")
     for choice in ("dark", "light"):
         look.select_option(choice)

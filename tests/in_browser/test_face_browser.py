@@ -148,7 +148,7 @@ def test_what_acts_on_the_robots_comes_before_the_panel(tab: Tab) -> None:
 
 def test_sliders_their_boxes_and_the_scene_have_names(tab: Tab) -> None:
     page = tab.page
-    tab.open("Gains")
+    tab.open("Gains and path")
     expect(page.get_by_role("slider", name="K1 across")).to_have_count(1)
     expect(page.get_by_role("textbox", name="K1 across")).to_have_count(1)
     expect(page.get_by_role("img", name="Two robots")).to_have_count(1)
@@ -162,7 +162,7 @@ def test_another_language_comes_without_a_reload_and_leaves_open_what_is_open(ta
     for group in tab.page.locator("#op-panel details[open] > summary").all():
         group.click()
     tab.open("Reality")
-    tab.press("Language, display")
+    tab.more("Language, display")
     tab.page.get_by_role("dialog").get_by_label("Language").select_option("de")
     expect(tab.page.locator("html")).to_have_attribute("lang", "de")
     expect(tab.page.get_by_role("dialog", name="Sprache, Anzeige")).to_be_visible()
@@ -181,7 +181,7 @@ def test_what_happens_is_spoken_unless_that_is_switched_off(tab: Tab) -> None:
     spoken = tab.page.locator("#op-voice")
     tab.ask(c.Hold(True))
     expect(spoken).to_contain_text("Held back.")
-    tab.press("Language, display")
+    tab.more("Language, display")
     tab.page.get_by_role("switch", name="Say what happens").uncheck()
     tab.page.keyboard.press("Escape")
     tab.page.get_by_role("dialog").wait_for(state="hidden")
@@ -189,7 +189,7 @@ def test_what_happens_is_spoken_unless_that_is_switched_off(tab: Tab) -> None:
     wait_for(lambda: all(run.distance < 1e-3 for run in tab.simulation.runs.values()))
     tab.settle()
     expect(spoken).to_contain_text("Held back.")
-    tab.press("Language, display")
+    tab.more("Language, display")
     tab.page.get_by_role("switch", name="Say what happens").check()
     expect(spoken).to_contain_text("Both on the path.")
     tab.page.keyboard.press("Escape")
@@ -250,7 +250,7 @@ def test_the_distances_are_heard_once_that_is_switched_on(
     tab = Tab(server, context, draws=False)
     tab.settle()
     assert tab.page.evaluate("window.tones === undefined")
-    tab.press("Language, display")
+    tab.more("Language, display")
     tab.page.get_by_role("switch", name="Distance as sound").check()
     tab.page.keyboard.press("Escape")
     tab.ask(c.Hold(True))
@@ -262,7 +262,7 @@ def test_the_distances_are_heard_once_that_is_switched_on(
 
 def test_a_share_code_is_copied(tab: Tab) -> None:
     tab.page.context.grant_permissions(["clipboard-read", "clipboard-write"])
-    tab.press("Keep and share")
+    tab.more("Keep and share")
     tab.button("Share this set-up").click()
     code = tab.page.locator("code", has_text="ONPATH")
     code.locator("xpath=following-sibling::button").click()

@@ -99,7 +99,7 @@ def test_the_lab_is_there_and_obeys_before_the_script_of_its_picture_has_come(
         page.goto(f"http://127.0.0.1:{proxy.port}/", wait_until="commit")
         page.get_by_role("button", name="Hold both back").click()
         page.wait_for_function("onpathLab.state.held")
-        expect(page.get_by_role("button", name="Compare laws…")).to_be_visible()
+        expect(page.get_by_role("button", name="Draw")).to_be_visible()
         assert page.locator("canvas[data-engine]").count() == 0
         may_come.set()
         page.wait_for_selector("canvas[data-engine]", state="attached")

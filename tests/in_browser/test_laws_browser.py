@@ -94,7 +94,7 @@ def test_an_own_law_is_typed_and_a_typo_changes_nothing(tab: Tab) -> None:
     assert simulation.runs[RIGHT].max_distance < 1e-3
     expect(page.get_by_text(said)).to_have_count(0)
     expect(page.locator("#op-strip").get_by_text("Own law", exact=True)).to_be_visible()
-    tab.press("Compare laws…")
+    tab.more("Compare laws")
     tab.button("About the laws").click()
     names = page.get_by_role("dialog").locator("td code")
     names.first.wait_for()

@@ -25,6 +25,7 @@ def test_a_file_becomes_the_path_and_a_hostile_one_is_refused(tab: Tab) -> None:
 
     def choose(name: str, content: bytes) -> None:
         if not page.get_by_role("dialog").is_visible():
+            tab.open("Gains and path")
             tab.press("File…")
         with page.expect_file_chooser() as chooser:
             page.get_by_role("button", name="Choose a file").click()

@@ -118,7 +118,7 @@ def test_who_is_no_member_any_more_is_told_and_goes_on(seat: Seat) -> None:
 
 def test_a_teacher_opens_the_teachers_page_with_the_key(seat: Seat) -> None:
     page = seat.tab.page
-    page.locator("#op-head").get_by_role("button", name="Language, display").click()
+    seat.tab.more("Language, display")
     page.get_by_role("button", name="Teacher…").click()
     sheet = page.get_by_role("dialog", name="Open the teacher's page")
     key = sheet.get_by_label("Teacher's key")

@@ -26,7 +26,7 @@ PLAYED = """seconds => [...document.querySelectorAll("[role=slider]")].some(
 
 
 def download(tab: Tab, button: str) -> Download:
-    tab.press("Keep and share")
+    tab.more("Keep and share")
     with tab.page.expect_download(timeout=30_000) as waiting:
         tab.button(button).click()
     return waiting.value
@@ -99,7 +99,7 @@ def test_another_tab_is_another_lab_that_ends_with_it(tab: Tab) -> None:
     second = Tab(tab.server, tab.page.context, draws=False)
     assert second.lab is not tab.lab
     assert second.simulation.running and not tab.simulation.running
-    second.press("Help and keys")
+    second.more("Help and keys")
     second.page.get_by_role("dialog").wait_for()
     second.page.keyboard.press("Escape")
     second.page.get_by_role("dialog").wait_for(state="hidden")

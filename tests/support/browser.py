@@ -361,6 +361,11 @@ class Tab:
         self.wait_until_built()
         self.button(name).click()
 
+    def more(self, name: str) -> None:
+        """Open what is in the menu of the head."""
+        self.press("More")
+        self.button(name).click()
+
     def button(self, name: str) -> Locator:
         """Return the button with a label."""
         return self.page.get_by_role("button", name=name, exact=True)
@@ -442,7 +447,7 @@ class Tab:
 
     def teach(self, key: str) -> None:
         """Ask for the teacher's page with a key."""
-        self.button("Language, display").click()
+        self.more("Language, display")
         dialog = self.page.get_by_role("dialog")
         dialog.get_by_role("button", name="Teacher…").click()
         dialog.get_by_label("Teacher's key").fill(key)

@@ -153,6 +153,7 @@ export class Shell {
         this.keep?.show(lab.shared)
         this.compare?.follow()
         this.panel.freeze(lab.frozen)
+        this.header.own = lab.own
         const known = `${lab.language} ${lab.robot}`
         if (known === this.known) return
         this.known = known

@@ -3,14 +3,15 @@
 import type { ClassMessage } from "../channel/messages"
 import { made } from "../core/dom"
 import { phrase, type Texts } from "../core/words"
-import { icon, type Icon } from "./icons"
+import { icon } from "./icons"
+import { Menu } from "./menu"
 import { pressed } from "./sheet"
 
-type Destination = "controls" | "search" | "lessons" | "help" | "display" | "class"
-const ICONS: Record<Exclude<Destination, "class">, Icon> = { controls: "controls", search: "search", lessons: "lessons", help: "help", display: "gear" }
-const KEYS: Record<keyof typeof ICONS, string> = {
-    controls: "lesson.controls", search: "search.title", lessons: "lesson.lessons", help: "controls.help", display: "display.title",
-}
+/** Places of the head, and of its menu; with their names. */
+const PLACES = { controls: "lesson.controls", lessons: "lesson.lessons", search: "search.title" } as const
+const MORE = { compare: "compare.title", keep: "keep.title", help: "controls.help", display: "display.title" } as const
+type Place = keyof typeof PLACES
+type Destination = Place | keyof typeof MORE | "class"
 
 export class Header {
     readonly element = made("header", "")
@@ -19,22 +20,31 @@ export class Header {
     private readonly brand = made("span", "brand", "OnPath")
     /** Opens the card of the class. */
     readonly seat: HTMLButtonElement
+    private readonly ofLab: HTMLButtonElement[] // in the menu
 
     constructor(private readonly texts: Texts, go: (place: Destination) => void) {
         this.element.id = "op-head"
-        const button = (place: keyof typeof ICONS) => {
-            const name = phrase(texts, KEYS[place])
-            const named = pressed(place, icon(ICONS[place]), () => go(place))
-            named.append(made("span", "", name))
-            return Object.assign(named, { title: name, ariaLabel: name })
+        const button = (place: Place) => {
+            const named = pressed(place, icon(place), () => go(place))
+            return entitled(named, phrase(texts, PLACES[place]))
         }
+        const more = phrase(texts, "head.more"), menu = new Menu(more)
+        menu.button.append(icon("more"))
+        const item = (place: keyof typeof MORE) => pressed("", phrase(texts, MORE[place]), () => menu.leave(() => go(place)))
+        this.ofLab = [item("compare"), item("keep")]
+        menu.list.append(...this.ofLab, item("help"), item("display"))
         this.controls = button("controls")
         this.controls.ariaExpanded = "false"
-        const places = made("nav", "", this.controls, button("lessons"), button("search"), button("help"), button("display"))
+        const places = made("nav", "", this.controls, button("lessons"), button("search"), entitled(menu.button, more), menu.list)
         places.ariaLabel = "OnPath"
         this.seat = pressed("seat", "", () => go("class"))
         this.seat.hidden = true
         this.element.append(this.brand, this.seat, places)
+    }
+
+    /** Whether the lab is one's own. */
+    set own(own: boolean) {
+        for (const each of this.ofLab) each.hidden = !own
     }
 
     /** Show who one is in the class, or how to join it. */
@@ -47,4 +57,10 @@ export class Header {
         else seat.replaceChildren(phrase(texts, "class.join"))
         seat.ariaLabel = seat.title = place === "member" ? `${name} · ${room}` : phrase(texts, "class.join")
     }
+}
+
+/** Give a button with a picture its name. */
+function entitled(button: HTMLButtonElement, name: string): HTMLButtonElement {
+    button.append(made("span", "", name))
+    return Object.assign(button, { title: name, ariaLabel: name })
 }

@@ -2,34 +2,26 @@
 
 import { made } from "../core/dom"
 import { phrase, type Texts } from "../core/words"
+import { Menu } from "./menu"
 import { pressed } from "./sheet"
 
 export class PlotMenu {
-    private readonly button = made("button", "")
-    private readonly list = made("div", "op-menu")
+    private readonly menu: Menu
     /** The button that opens it, and its list. */
-    readonly element = made("div", "plots", this.button, this.list)
-
+    readonly element: HTMLElement
     private readonly table: HTMLButtonElement
 
     /** `choose` is called with the name of a row, and whether it is wanted; `tell` shows the curves as a table. */
     constructor(texts: Texts, private readonly choose: (name: string, on: boolean) => void, tell: () => void) {
-        const { button, list } = this
-        Object.assign(button, { type: "button", textContent: phrase(texts, "plots.menu"), title: phrase(texts, "plots.menu_hint") })
-        Object.assign(list, { popover: "auto", role: "group", ariaLabel: phrase(texts, "plots.menu") })
-        this.table = pressed("", phrase(texts, "chart.table"), () => {
-            list.hidePopover()
-            tell()
-        })
-        button.ariaHasPopup = "true"
-        button.ariaExpanded = "false"
-        button.popoverTargetElement = list
-        list.addEventListener("beforetoggle", event => this.place(event.newState === "open"))
+        const name = phrase(texts, "plots.menu"), menu = (this.menu = new Menu(name))
+        Object.assign(menu.button, { textContent: name, title: phrase(texts, "plots.menu_hint") })
+        this.table = pressed("", phrase(texts, "chart.table"), () => menu.leave(tell))
+        this.element = made("div", "plots", menu.button, menu.list)
     }
 
     /** Show the rows that there can be. */
     show(rows: readonly { name: string; menu: string; on: boolean }[]): void {
-        const { list } = this
+        const { list } = this.menu
         const focused = list.contains(document.activeElement) ? (document.activeElement as HTMLInputElement).value : null
         list.replaceChildren(...rows.map(({ name, menu, on }) => {
             const box = made("input", "")
@@ -38,20 +30,5 @@ export class PlotMenu {
             return made("label", "", box, menu)
         }), this.table)
         if (focused !== null) list.querySelector<HTMLInputElement>(`input[value="${focused}"]`)?.focus()
-    }
-
-    /** The list stands above the button, or below it where there is more room. */
-    private place(open: boolean): void {
-        const { button, list } = this
-        button.ariaExpanded = String(open)
-        if (!open) return
-        const { left, top, bottom } = button.getBoundingClientRect()
-        const above = top > innerHeight / 2
-        Object.assign(list.style, {
-            left: `${Math.max(8, Math.min(left, innerWidth - 280))}px`,
-            top: above ? "auto" : `${bottom + 4}px`,
-            bottom: above ? `${innerHeight - top + 4}px` : "auto",
-            maxHeight: `${(above ? top : innerHeight - bottom) - 16}px`,
-        })
     }
 }
