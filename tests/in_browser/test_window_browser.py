@@ -26,10 +26,11 @@ SIZES = ((1280, 800), (1366, 768), (1920, 1080), (820, 1180), (390, 844), (640, 
 """Laptops, a projector, a tablet, a telephone, and a laptop's page enlarged twice."""
 WIDE: ViewportSize = {"width": 1280, "height": 800}
 LEAST, MOST = (360, 640), (2560, 1440)
-LESSON = "01-path-or-timetable"
-STEPS = (1, 6)  # a prediction, and a task with controls
+LESSON, OTHER = "01-path-or-timetable", "04-across-and-along"
+STEPS = ((LESSON, 1), (LESSON, 6), (OTHER, 7))
+"""A prediction, a task with controls, and two tasks."""
 LOOKS = 20  # at most, until a page has followed its window
-FIRST = 16  # controls that are seen at first in the panel
+FIRST = 10  # controls that are seen at first in the panel
 FAULTS = """touch => {
     const faults = [], controls = "button, select, input, textarea, a[href]"
     const seen = element => element.checkVisibility({visibilityProperty: true})
@@ -77,6 +78,20 @@ FAULTS = """touch => {
         if (height < 43.5 && !(takes(0, 20) && takes(0, -20))) says("too low", element)
         if (width < 43.5 && !(takes(20, 0) && takes(-20, 0))) says("too narrow", element)
     }
+    for (const words of dialog ? [] : document.querySelectorAll(".step.open .words")) {
+        const area = words.getBoundingClientRect(), end = words.scrollHeight - words.clientHeight
+        for (let at = 0; at <= end; at += Math.max(words.clientHeight / 5, 20)) {
+            words.scrollTo(0, at)
+            for (const element of words.querySelectorAll(`.form :is(${controls})`)) {
+                const {left, top, width, height} = element.getBoundingClientRect()
+                const [x, y] = [left + width / 2, top + height / 2]
+                if (!width || y < area.top + 1 || y > area.bottom - 1) continue
+                const row = element.closest(".field") ?? element
+                const isFree = row.contains(document.elementFromPoint(x, y))
+                if (!isFree) says(`covered at ${at}`, element)
+            }
+        }
+    }
     for (const each of [document.documentElement, ...own])
         if (each.scrollWidth > each.clientWidth + 1) says("scrolls sideways", each)
     return faults
@@ -89,11 +104,9 @@ SHOWN = """() => {
         each.checkVisibility({visibilityProperty: true})
         && each.getBoundingClientRect().bottom < bottom).length
 }"""
-SHEETS = (
-    *("lesson.lessons", "controls.help", "display.title", "search.title"),
-    *("setup.compare", "keep.title", "setup.file"),
-)
-"""Names of the buttons that open them."""
+MORE = ("controls.help", "display.title", "compare.title", "keep.title")
+SHEETS = ("lesson.lessons", "search.title", *MORE)
+"""Names of the buttons that open them; those of `MORE` are in the menu."""
 
 
 def drawn(rng: np.random.Generator) -> list[tuple[int, int]]:
@@ -129,17 +142,17 @@ def test_nothing_is_outside_cut_covered_or_too_small(
     page.set_viewport_size(WIDE)
     used.ask(c.SetRunning(False), c.SetLanguage(language))
     words = Words(language)
-    page.get_by_role("button", name=words("setup.compare"), exact=True).wait_for()
+    page.get_by_role("button", name=words("setup.draw"), exact=True).wait_for()
     assert found(used, list(SIZES), touch) == []
     for name in SHEETS:
         page.set_viewport_size(WIDE)
-        page.get_by_role("button", name=words(name), exact=True).click()
+        for each in (*(["head.more"] if name in MORE else []), name):
+            page.get_by_role("button", name=words(each), exact=True).click()
         page.get_by_role("dialog").wait_for()
         assert found(used, drawn(rng), touch) == [], name
         page.keyboard.press("Escape")
-    used.ask(c.OpenLesson(LESSON))
     for step in STEPS:
-        used.ask(c.GoToStep(step - used.lab.lessons.index))
+        used.ask(c.TakeStep(*step))
         used.wait_until_built()
         assert found(used, drawn(rng), touch) == [], step
     assert used.errors == []
