@@ -60,12 +60,15 @@ class ControlCommand:
         beside = ControllerProcess(self._plan(), address)
         driving = Driving(beside, self.at_fault)
         try:
-            return driving.run()
+            code = driving.run()
+        except BaseException:  # such as a terminal that is gone
+            beside.leave()
+            raise
         finally:
-            beside.close()
             if self.log:
                 write_log(self.log, beside.robot, driving.rows)
-                print(f"{self.log}: {len(driving.rows)} measurements")
+        beside.close()
+        return code
 
     def _plan(self) -> ControllerPlan:
         from onpath.app.notebook.arguments import curve_of, path_name

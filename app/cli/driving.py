@@ -6,7 +6,9 @@ import csv
 import signal
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 from queue import Empty, SimpleQueue
 from threading import Thread
@@ -31,6 +33,7 @@ NOT_SAFE = (
     "This is no safety function. Around a real arm there must be a stop that cuts the power, and"
     " its maker's limits of speed and force; keep out of its reach."
 )
+Change = Callable[[], PlantReport]
 
 
 class Driving:
@@ -42,18 +45,19 @@ class Driving:
 
     def __init__(self, beside: ControllerProcess, at_fault: str) -> None:
         self._beside, self._at_fault = beside, at_fault
-        self._typed = SimpleQueue[str]()
+        self._wanted = SimpleQueue[Change]()
         self._told = time.monotonic()
         self.rows = list[tuple[float, ...]]()
 
     def run(self) -> int:
         """Go on until Enter or Ctrl-C, or until it ends itself; the exit code."""
-        host, port = self._beside.address
+        beside = self._beside
+        host, port = beside.address
         print(NOT_SAFE)
         print(f"It waits for a plant at udp://{host}:{port}. Enter or Ctrl-C stops it.")
         print("While it runs, type K1=900, path=circle or law=NAME.", flush=True)
         for number in END_SIGNALS:
-            signal.signal(number, lambda *_: self._typed.put(""))
+            signal.signal(number, lambda *_: self._wanted.put(beside.stop))
         if sys.stdin is not None:
             Thread(target=self._read, name="typed", daemon=True).start()
         report = self._until_end()
@@ -67,10 +71,10 @@ class Driving:
     def _until_end(self) -> PlantReport:
         report = self._beside.report()
         while not report.code:
-            line = self._line()
-            if line == "" and not report.started:
+            change = self._next()
+            if change == self._beside.stop and not report.started:
                 return report
-            report = self._done(line) or self._beside.report()
+            report = self._changed(change)
             self.rows += report.rows
             if report.started and time.monotonic() - self._told > TOLD:
                 self._told = time.monotonic()
@@ -80,31 +84,52 @@ class Driving:
     def _until_silent(self, report: PlantReport) -> None:
         """Let it give the torque for a fault until the plant is silent, or Enter is pressed."""
         answered, since = report.answered, time.monotonic()
-        while time.monotonic() - since < TOLD and self._line() != "":
+        while time.monotonic() - since < TOLD and self._next() != self._beside.stop:
             now = self._beside.report()
             self.rows += now.rows
             if now.answered != answered:
                 answered, since = now.answered, time.monotonic()
 
-    def _done(self, line: str | None) -> PlantReport | None:
-        """What a typed line asks for; None: nothing, or it has an error."""
-        if line is None:
-            return None
-        if line == "":
-            return self._beside.stop()
+    def _next(self) -> Change:
+        """The next change that is wanted; if none is within `EVERY`, only a report."""
         try:
-            name, equals, text = (part.strip() for part in line.partition("="))
-            if not equals:
-                raise ValueError(f"{line}: expected NAME=VALUE, path=... or law=...")
-            if name == "law":
-                return self._beside.use(text)
-            if name == "path":
-                return self._beside.follow(curve_of("path", text, self._beside.robot))
-            changed = with_values(self._beside.parameters, {name: text})
-            return self._beside.set(**{name: value_of(changed, name)})
+            return self._wanted.get(timeout=EVERY)
+        except Empty:
+            return self._beside.report
+
+    def _changed(self, change: Change) -> PlantReport:
+        try:
+            return change()
+        except ValueError as error:
+            _complain(error)
+            return self._beside.report()
+
+    def _read(self) -> None:
+        """Read what is typed. Nothing that takes long delays the stop or the next report."""
+        with ThreadPoolExecutor(1, "changes") as slow:
+            for line in sys.stdin:
+                if text := line.strip():
+                    slow.submit(self._want, text)
+                else:
+                    self._wanted.put(self._beside.stop)
+
+    def _want(self, text: str) -> None:
+        try:
+            self._wanted.put(self._change_in(text))
         except (ValueError, OSError) as error:
-            print(f"onpath: {error}", file=sys.stderr, flush=True)
-            return None
+            _complain(error)
+
+    def _change_in(self, text: str) -> Change:
+        """What a typed line asks for."""
+        name, equals, value = (part.strip() for part in text.partition("="))
+        if not equals:
+            raise ValueError(f"{text}: expected NAME=VALUE, path=... or law=...")
+        if name == "law":
+            return partial(self._beside.use, value)
+        if name == "path":
+            return partial(self._beside.follow, curve_of("path", value, self._beside.robot))
+        changed = with_values(self._beside.parameters, {name: value})
+        return partial(self._beside.set, **{name: value_of(changed, name)})
 
     def _state(self, report: PlantReport) -> str:
         """A line about the last second."""
@@ -114,16 +139,9 @@ class Driving:
         late = f"at most {1e3 * report.late:.2f} ms late"
         return f"{report.answered} answers, {late}, {away:.2f} mm from the path, {report.law}"
 
-    def _line(self) -> str | None:
-        """What has been typed, "" for the end; None if nothing comes within `EVERY`."""
-        try:
-            return self._typed.get(timeout=EVERY)
-        except Empty:
-            return None
 
-    def _read(self) -> None:
-        for line in sys.stdin:
-            self._typed.put(line.strip())
+def _complain(error: Exception) -> None:
+    print(f"onpath: {error}", file=sys.stderr, flush=True)
 
 
 def _counted(report: PlantReport) -> str:

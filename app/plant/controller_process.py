@@ -89,7 +89,7 @@ class ControllerProcess:
         self.robot = next(iter(self.controllers.values())).design.robot
         context = multiprocessing.get_context("spawn")
         self._connection, theirs = context.Pipe()
-        self._process = context.Process(target=serve, args=(theirs, plan, address), daemon=True)
+        self._process = context.Process(target=serve, args=(theirs, plan, address))
         self._process.start()
         theirs.close()
         try:
@@ -133,8 +133,12 @@ class ControllerProcess:
 
     def close(self) -> None:
         """End the process, which then answers no more."""
-        self._connection.close()
         self._process.kill()
+        self.leave()
+
+    def leave(self) -> None:
+        """Leave the plant the torque for a fault for up to `LINGER`, and wait until then."""
+        self._connection.close()
         self._process.join()
 
     def _ask(self, what: str, *given: Any) -> PlantReport:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -84,9 +84,16 @@ class Design:
         terms = WINDOW if functions.spline else functions.table_shape[1]
         return operations_in(functions.basis) + 2 * terms * functions.step.numel_in(2)
 
-    def same_loop(self, other: Design) -> bool:
-        """Whether another controller differs in settings and paths only."""
-        return self.kind == other.kind and self.robot.core is other.robot.core
+    def changed(self, robot: Robot, parameters: Parameters, paths: Mapping[str, Curve]) -> Design:
+        """The same controller with other settings or paths, as for `design`.
+
+        Raises:
+            CodedError: see `design`; or it needs other functions.
+        """
+        curves, kind = _kind(self.law, parameters, paths)
+        if kind != self.kind or robot.core is not self.robot.core:
+            raise CodedError("error.controller_differs")
+        return replace(self, robot=robot, parameters=parameters, paths=curves)
 
     def closest(self, curve: Curve, q: Array) -> float:
         """θ of the path's point that is closest to the end-point at q, [rad]."""
@@ -126,6 +133,23 @@ def design(
         CodedError: the law does not suit the robot, or a path has no level set; the paths are of
             different kinds; or the speed has a profile.
     """
+    curves, kind = _kind(law, parameters, paths)
+    return Design(
+        robot=robot,
+        law=law,
+        parameters=parameters,
+        paths=curves,
+        at_fault=at_fault,
+        fastest=fastest,
+        kind=kind,
+        functions=controller_functions(robot.core, kind),
+    )
+
+
+def _kind(
+    law: str, parameters: Parameters, paths: Mapping[str, Curve]
+) -> tuple[dict[str, Curve], Kind]:
+    """The paths with the rise of the parameters, and the kind of the controller; see `design`."""
     if profile_of(parameters) is not None:
         raise CodedError("error.controller_profile")
     curves = {name: raised(curve, parameters) for name, curve in paths.items()}
@@ -135,13 +159,4 @@ def design(
     kinds = [controller_kind(kind_of(law, parameters, each), observer) for each in curves.values()]
     if any(kind != kinds[0] for kind in kinds):
         raise CodedError("error.controller_paths")
-    return Design(
-        robot=robot,
-        law=law,
-        parameters=parameters,
-        paths=curves,
-        at_fault=at_fault,
-        fastest=fastest,
-        kind=kinds[0],
-        functions=controller_functions(robot.core, kinds[0]),
-    )
+    return curves, kinds[0]
