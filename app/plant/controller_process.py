@@ -30,6 +30,7 @@ from onpath.models.systems.robots import RobotEntry
 
 ASKED = 1.0  # [s] without a request, after which the process that asks counts as lost
 LINGER = 10.0  # [s] for which a lost process's controller still answers
+START = "spawn"  # so that it shares nothing with who starts it
 PATIENCE = 60.0  # [s] for the controllers to be made, or for an answer
 Address = tuple[str, int]
 
@@ -87,7 +88,7 @@ class ControllerProcess:
     def __init__(self, plan: ControllerPlan, address: Address) -> None:
         self.controllers = plan.made()
         self.robot = next(iter(self.controllers.values())).design.robot
-        context = multiprocessing.get_context("spawn")
+        context = multiprocessing.get_context(START)
         self._connection, theirs = context.Pipe()
         self._process = context.Process(target=serve, args=(theirs, plan, address))
         self._process.start()

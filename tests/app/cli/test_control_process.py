@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import multiprocessing
 import re
 import signal
 import socket
@@ -17,6 +18,7 @@ import pytest
 import onpath
 from onpath.app.cli.driving import Driving, write_log
 from onpath.app.common.end_signals import END_SIGNALS
+from onpath.app.plant import controller_process
 from onpath.app.plant.controller_process import ControllerPlan, ControllerProcess
 from onpath.app.plant.datagrams import Measured, measurement, torque_in
 from onpath.app.plant.plant_link import PlantReport
@@ -30,6 +32,13 @@ RATE = 50
 CODE = {"0": 0, **{f"`{name.upper()}`": number for number, name in enumerate(REFUSALS, 1)}}
 TABLE = (ROOT / "app" / "plant" / "README.md").read_text("utf-8")
 FAULTS = re.findall(r"^\| `(\w+)` \|.*\| (0|`[A-Z_]+`) \|$", TABLE, re.MULTILINE)
+
+
+@pytest.fixture
+def forked(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let the processes be forked from one that has imported everything, which is quicker."""
+    monkeypatch.setattr(controller_process, "START", "forkserver")
+    multiprocessing.set_forkserver_preload([controller_process.__name__])
 
 
 @pytest.fixture
@@ -76,6 +85,7 @@ def test_what_does_no_harm_is_ignored(beside: ControllerProcess) -> None:
     assert report.answered == 60 and report.code == CODE["`LATE`"]  # since the plant has left
 
 
+@pytest.mark.usefixtures("forked")
 @pytest.mark.parametrize(("fault", "code"), [each for each in FAULTS if each[1] != "0"])
 def test_what_the_table_says_ends_it(beside: ControllerProcess, fault: str, code: str) -> None:
     running = plant(beside, fault)
@@ -86,6 +96,7 @@ def test_what_the_table_says_ends_it(beside: ControllerProcess, fault: str, code
     assert report.answered == (50 if fault == "die" else 60)
 
 
+@pytest.mark.usefixtures("forked")
 @pytest.mark.parametrize("gone", [True, False])
 def test_a_process_that_asks_no_more_is_missed(beside: ControllerProcess, gone: bool) -> None:
     """The next measurements get the torque for a fault, damping, and the code for it."""
@@ -107,6 +118,7 @@ def test_a_process_that_asks_no_more_is_missed(beside: ControllerProcess, gone: 
     assert answer[1] == CODE["`STOPPED`"] and answer[2][0] < 0
 
 
+@pytest.mark.usefixtures("forked")
 def test_what_is_typed_acts_and_the_log_is_that_of_a_real_arm(
     beside: ControllerProcess,
     monkeypatch: pytest.MonkeyPatch,
