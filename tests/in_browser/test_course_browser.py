@@ -176,6 +176,7 @@ class Checking(Pupil):
         assert missing(self.tab, *texts) == ([] if shown else texts)
 
 
+@pytest.mark.timeout(500)
 @pytest.mark.parametrize("name", LESSONS)
 def test_a_lesson_is_done_from_its_first_page_to_its_end_by_mouse(tab: Tab, name: str) -> None:
     front = COURSE.lesson(name, "en").front
