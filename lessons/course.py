@@ -214,7 +214,8 @@ def read_versions(home: Path) -> tuple[dict[str, Lesson], list[Problem]]:
         first, *others = versions.values()
         for other in others:
             problems += _differences(first, other, home / f"{other.language}.md")
-            versions[other.language] = replace(other, keys=first.keys)
+            same = replace(other, keys=first.keys, version=first.version)
+            versions[other.language] = same
         if home.name != FOLDER:
             problems += read_references(first, home / REFERENCE)[1]
     return versions, problems

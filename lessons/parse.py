@@ -20,7 +20,7 @@ from onpath.lessons.behaviour.marks import Behaviour, take_behaviours
 from onpath.lessons.completeness import first_page_faults, lacks, order_faults
 from onpath.lessons.concept_test.concept_test import FOLDER, lacks_of_test
 from onpath.lessons.formulas import TextError, reader
-from onpath.lessons.kept.option_keys import keys_of
+from onpath.lessons.kept.option_keys import fingerprint, keys_of
 from onpath.lessons.measures.stated import Stated, take_stated
 from onpath.lessons.problems import LessonError, Problem, line_of
 from onpath.lessons.prose import data_faults, own_picture, read_prose, text_faults
@@ -135,7 +135,14 @@ class _Reader:
         if not self._problems and front is not None:
             name, language = self._path.parent.name, self._path.stem
             made = self._made(steps)
-            return Lesson(name=name, language=language, front=front, steps=made, keys=keys_of(made))
+            return Lesson(
+                name=name,
+                language=language,
+                front=front,
+                steps=made,
+                keys=keys_of(made),
+                version=fingerprint(self._text),
+            )
         raise LessonError(self._problems)
 
     def _made(self, drafts: list[_Draft]) -> tuple[Step, ...]:

@@ -4,69 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import Annotated, Literal, cast
+from functools import cached_property
+from typing import Annotated
 
 import msgspec
 
-MOST_POINTS = 200
-MOST_TEXT = 1000
-"""Longest answer in a student's own words, [characters]."""
-Index = Annotated[int, msgspec.Meta(ge=0, le=1000)]
-Key = Annotated[str, msgspec.Meta(max_length=80)]
-Written = Annotated[str, msgspec.Meta(max_length=MOST_TEXT)]
-Sure = Literal["", "guessing", "fairly", "certain"]
-"""How sure a student is of a prediction; empty if the student did not say."""
-SURENESS: tuple[Sure, ...] = ("guessing", "fairly", "certain")
-Points = Annotated[tuple[float, ...], msgspec.Meta(max_length=MOST_POINTS)]
-
-
-class Answer(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The answer to a prediction: an option, a sketched curve, or neither if it was skipped.
-
-    Attributes:
-        option: index of the option, or None.
-        times, values: points of a sketch, [s] and in the quantity's unit.
-        sure: how sure the student is.
-        reason: index of the chosen reason, or None.
-        why: the reason in the student's own words.
-    """
-
-    option: Index | None = None
-    times: Points = ()
-    values: Points = ()
-    sure: Sure = ""
-    reason: Index | None = None
-    why: Written = ""
-
-    @property
-    def skipped(self) -> bool:
-        """Whether no answer was given."""
-        return self.option is None and not self.times
-
-
-class Given(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """One answer, as it was given: what was answered later is another one beside it.
-
-    Attributes:
-        item: what was answered: a prediction, by step, or a question, by step and block.
-        time: seconds since 1970; 0 if unknown.
-        round: how often the item had been asked again by then; 0: never.
-        answer: to a prediction or a quiz.
-        number: to a question whose answer is a number.
-        text: in the student's own words.
-        mark, why_mark: keys of the chosen option and reason; see `lessons.kept`.
-        key: a number by which the browser knows the answer; one that comes again counts once.
-    """
-
-    item: Key
-    time: float = 0.0
-    round: Index = 0
-    answer: Answer | None = None
-    number: float | None = None
-    text: Written = ""
-    mark: Key = ""
-    why_mark: Key = ""
-    key: Key = ""
+from onpath.lessons.given import Answer, Given, Index, Key, Points
+from onpath.lessons.kept.former_progress import progress_of_today
+from onpath.lessons.kept.option_keys import second_key
 
 
 class Truth(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -78,50 +23,110 @@ class Truth(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     follower: Points
 
 
-class Notes(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class Notes(msgspec.Struct, frozen=True, forbid_unknown_fields=True, dict=True):
     """Progress in one lesson.
 
     Attributes:
         step: index of the open step.
         seen: number of steps that have been opened.
-        answers, truths: of the predictions, by step.
+        truths: what happened after the predictions, by step.
         played: steps whose script has been run.
-        tasks: ids of passed tasks -> best value so far, or 0 for tasks without one.
-        ways: the way in which a task was passed last, by task; see `lessons.checks.way_of`.
         hints: number of hints shown, by task.
-        quiz: chosen options, by step and block.
-        numbers: answers that are numbers, by step and block.
-        written: answers in the student's own words, and the rows of derivations (see
-            `lessons.derivation.judged`), by step and block.
-        twice: quizzes and questions for numbers that have been answered a second time, by step and
-            block.
         asked_again: predictions that the teacher has asked again after a discussion, by step; one
             is in it as often as it was asked again.
-        second: the answers to those.
-        marks: keys of the chosen options; see `lessons.kept`.
-        unknown: keys of choices that cannot be identified, because the lesson has changed.
         handed_in: whether a test has been handed in, after which its answers do not change.
-        given: the answers in the order in which they were given; see `given_to`.
+        given: all answers, in the order in which they were given; see `given_to`.
     """
 
     step: Index = 0
     seen: Index = 0
-    answers: dict[Key, Answer] = {}
     truths: dict[Key, Truth] = {}
     played: Annotated[tuple[Key, ...], msgspec.Meta(max_length=1000)] = ()
-    tasks: dict[Key, float] = {}
-    ways: dict[Key, Index] = {}
     hints: dict[Key, Index] = {}
-    quiz: dict[Key, Index] = {}
-    numbers: dict[Key, float] = {}
-    written: dict[Key, Written] = {}
-    twice: Annotated[tuple[Key, ...], msgspec.Meta(max_length=1000)] = ()
     asked_again: Annotated[tuple[Key, ...], msgspec.Meta(max_length=1000)] = ()
-    second: dict[Key, Answer] = {}
-    marks: dict[Key, Key] = {}
-    unknown: Annotated[tuple[Key, ...], msgspec.Meta(max_length=1000)] = ()
     handed_in: bool = False
     given: Annotated[tuple[Given, ...], msgspec.Meta(max_length=10_000)] = ()
+
+    @cached_property
+    def by_item(self) -> dict[str, tuple[Given, ...]]:
+        """The answers to each item, in order."""
+        found = dict[str, tuple[Given, ...]]()
+        for each in self.given:
+            found[each.item] = (*found.get(each.item, ()), each)
+        return found
+
+    @cached_property
+    def answers(self) -> dict[str, Answer]:
+        """The answers to predictions, by step: of each the first one that was not skipped."""
+        return self._predicted(again=False)
+
+    @cached_property
+    def second(self) -> dict[str, Answer]:
+        """The answers to predictions that were asked again, since the last time."""
+        return self._predicted(again=True)
+
+    @cached_property
+    def quiz(self) -> dict[str, int]:
+        """The options chosen last, by step and block."""
+        last = {item: given[-1].answer for item, given in self._asked()}
+        return {k: each.option for k, each in last.items() if each and each.option is not None}
+
+    @cached_property
+    def numbers(self) -> dict[str, float]:
+        """The last answers that are numbers, by step and block."""
+        last = {item: given[-1].number for item, given in self._asked()}
+        return {item: each for item, each in last.items() if each is not None}
+
+    @cached_property
+    def written(self) -> dict[str, str]:
+        """The last answers in the student's own words, and the rows of derivations (see
+        `lessons.derivation.judged`), by step and block."""
+        return {item: given[-1].text for item, given in self._asked() if given[-1].text}
+
+    @cached_property
+    def twice(self) -> frozenset[str]:
+        """The questions that have been answered more than once."""
+        return frozenset(item for item, given in self._asked() if given[-1].attempt > 1)
+
+    @cached_property
+    def tasks(self) -> dict[str, float]:
+        """Ids of passed tasks -> best value so far, or 0 for tasks without one."""
+        return {item: min(each.number or 0.0 for each in given) for item, given in self._passed()}
+
+    @cached_property
+    def ways(self) -> dict[str, int]:
+        """The way in which a task was passed last; see `lessons.checks.way_of`."""
+        return {item: given[-1].way or 0 for item, given in self._passed()}
+
+    @cached_property
+    def unknown(self) -> frozenset[str]:
+        """Keys of choices that cannot be identified, because the lesson has changed."""
+        first, again = (self._chosen(again=again) for again in (False, True))
+        found = [item for item, each in first.items() if each.lost]
+        found += [second_key(item) for item, each in again.items() if each.lost]
+        return frozenset((*found, *(item for item, given in self._asked() if given[-1].lost)))
+
+    def _predicted(self, again: bool) -> dict[str, Answer]:
+        found = self._chosen(again)
+        return {item: each.answer for item, each in found.items() if each.answer is not None}
+
+    def _chosen(self, again: bool) -> dict[str, Given]:
+        """Of each prediction the answer that counts, see `answers` and `second`."""
+        found = dict[str, Given]()
+        for item, given in self.by_item.items():
+            asked = self.asked_again.count(item) if again else 0
+            now = [each for each in given if each.round == asked and each.way is None]
+            if now and "." not in item and not (again and not asked):
+                found[item] = next((each for each in now if not each.is_skipped), now[0])
+        return found
+
+    def _asked(self) -> Iterator[tuple[str, tuple[Given, ...]]]:
+        """The answers to questions."""
+        return (each for each in self.by_item.items() if "." in each[0] and each[1][0].way is None)
+
+    def _passed(self) -> Iterator[tuple[str, tuple[Given, ...]]]:
+        """The times when tasks were passed."""
+        return (each for each in self.by_item.items() if each[1][0].way is not None)
 
 
 class Progress(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -143,22 +148,8 @@ class Progress(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 def given_to(notes: Notes, item: str) -> tuple[Given, ...]:
-    """The answers to an item, in order; of notes from before each was kept, those that remain."""
-    known = tuple(each for each in notes.given if each.item == item)
-    return known or tuple(_remaining(notes, item))
-
-
-def _remaining(notes: Notes, item: str) -> Iterator[Given]:
-    if item in notes.answers:
-        yield Given(item, answer=notes.answers[item])
-    if item in notes.second:
-        yield Given(item, round=notes.asked_again.count(item), answer=notes.second[item])
-    if item in notes.quiz:
-        yield Given(item, answer=Answer(option=notes.quiz[item]))
-    if item in notes.numbers:
-        yield Given(item, number=notes.numbers[item])
-    if item in notes.written:
-        yield Given(item, text=notes.written[item])
+    """The answers to an item, in order."""
+    return notes.by_item.get(item, ())
 
 
 def read_progress(data: object) -> Progress:
@@ -167,15 +158,10 @@ def read_progress(data: object) -> Progress:
     Raises:
         ValueError: it is not valid; the message names the place.
     """
-    if isinstance(data, dict):  # "presenting" is one of the lab's own settings now
-        given = cast("dict[object, object]", data)
-        data = {name: value for name, value in given.items() if name != "presenting"}
-    progress = msgspec.convert(data, Progress)
+    progress = msgspec.convert(progress_of_today(data), Progress)
     for notes in progress.notes.values():
-        numbers = [*notes.tasks.values(), *notes.numbers.values()]
-        numbers += [number for g in notes.given for number in (g.time, g.number or 0.0)]
-        given = [g.answer for g in notes.given if g.answer is not None]
-        for answer in (*notes.answers.values(), *notes.second.values(), *given):
+        numbers = [number for g in notes.given for number in (g.time, g.number or 0.0)]
+        for answer in (g.answer for g in notes.given if g.answer is not None):
             numbers += [*answer.times, *answer.values]
             if len(answer.times) != len(answer.values):
                 raise ValueError("a sketch with more times than values, or fewer")

@@ -319,6 +319,7 @@ class Lesson(msgspec.Struct, frozen=True):
         name: of its folder.
         language: two letters.
         keys: of the options, the same in all languages; see `lessons.kept.option_keys`.
+        version: of the text in its first language, by which an answer says what it answered.
     """
 
     name: str
@@ -326,6 +327,7 @@ class Lesson(msgspec.Struct, frozen=True):
     front: Front
     steps: tuple[Step, ...]
     keys: dict[str, tuple[str, ...]] = {}
+    version: str = ""
 
     def scene_at(self, index: int) -> StepSetup:
         """The complete setup of a step, independent of how the student got there."""

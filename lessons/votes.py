@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from onpath.lessons.progress import Given, Notes, given_to
+from onpath.lessons.given import Given
+from onpath.lessons.progress import Notes, given_to
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,10 +58,5 @@ def counted(notes: Notes, item: str, vote: Vote | None, again: bool = False) -> 
     given = [
         each for each in given_to(notes, item) if each.round == wanted and not is_late(vote, each)
     ]
-    made = [each for each in given if not is_skipped(each)]
+    made = [each for each in given if not each.is_skipped]
     return next(iter(made or given), None)
-
-
-def is_skipped(given: Given) -> bool:
-    """Whether no answer was given, since the prediction was passed over."""
-    return given.answer is not None and given.answer.skipped

@@ -1,6 +1,7 @@
 """Makes assets/web/channel/messages.ts: the types of all messages of this folder.
 
-Those of forms, which pages without a server have, too, are in assets/web/core/form_data.ts.
+Those of forms and of answers, which pages without a server have, too, are in
+assets/web/core/form_data.ts and given_data.ts.
 
 Run `python -m onpath.app.channel.typescript` after a change of messages or commands.
 """
@@ -22,8 +23,10 @@ from onpath.app.channel.messages import BY_CHANGES, LabMessage, PageMessage
 from onpath.app.lab.commands.command_codec import command_structs
 from onpath.app.viser_adapter.data_channel import SUBPROTOCOL
 from onpath.assets import asset_path
+from onpath.lessons.given import Given
 
 FILE, FORMS = "web/channel/messages.ts", "web/core/form_data.ts"
+GIVEN = "web/core/given_data.ts"
 WIDTH = 120
 HEAD = """\
 // The messages of the channel between a page and its lab, made by app/channel/typescript.py from
@@ -32,6 +35,10 @@ HEAD = """\
 HEAD_OF_FORMS = """\
 // The settings that a place shows, as data; made by app/channel/typescript.py from
 // app/channel/form_messages.py: change them there.
+"""
+HEAD_OF_GIVEN = """\
+// A student's answers, as they are kept with and without a server; made by
+// app/channel/typescript.py from lessons/given.py: change them there.
 """
 CHANGES = """\
 /** A message with only the fields that have changed. */
@@ -60,7 +67,13 @@ def files() -> dict[str, str]:
     forms = _Writer(reads=False)
     own = [forms.type(each) for each in inspect.multi_type_info(FORM_MESSAGES)]
     head = [HEAD_OF_FORMS, *forms.interfaces]
-    return {FORMS: "\n".join(head), FILE: _messages_file({"../core/form_data": tuple(own)})}
+    given = _Writer(reads=True)
+    given.type(inspect.type_info(Given))
+    return {
+        FORMS: "\n".join(head),
+        GIVEN: "\n".join([HEAD_OF_GIVEN, *given.interfaces]),
+        FILE: _messages_file({"../core/form_data": tuple(own)}),
+    }
 
 
 def _messages_file(elsewhere: dict[str, tuple[str, ...]]) -> str:

@@ -12,15 +12,14 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import partial
-from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 from onpath.app.classroom.classroom import Member
+from onpath.app.common.product import product_version
 from onpath.lessons.course import Course
-from onpath.lessons.derivation.judged import judged
-from onpath.lessons.kept.option_keys import second_key
+from onpath.lessons.given import Given
 from onpath.lessons.option_order import LETTERS
-from onpath.lessons.progress import Answer, Given, Notes, given_to
+from onpath.lessons.progress import Notes, given_to
 from onpath.lessons.schema import (
     Block,
     Choice,
@@ -48,6 +47,7 @@ _WHERE = ("lesson", "title", "step", "kind")
 ANSWERS = (
     *(*_STUDENT, *_WHERE, "item", "attempt", "given (UTC)", "late"),
     *("result", "chosen", "right", "value", "text", "sure", "reason", "why", "hints"),
+    *("lesson version", "OnPath"),
 )
 SKETCHES = (*_STUDENT, *_WHERE, "attempt", "time", "drawn")
 
@@ -76,16 +76,18 @@ def class_record(
 ) -> bytes:
     """The workbook.
 
-    The sheet Answers has a row for each answer to a prediction or a question of every lesson that
-    a student has begun, for each of these that is not answered, and for each task. `attempt` is 1
-    for the first answer to an item; of later ones, the last is kept, and after a discussion the
-    first. `given (UTC)` is empty for answers from before times were kept. `late` is 1 for an answer
-    after the vote was closed, and empty if there was none. `result` is "answered", "skipped",
-    "open" (neither), "passed" (a task), or "unknown" (the options have changed since). `right` is 1
-    or 0; `chosen` and `reason` are the letters of options; `value` is a number, and `text` the
-    student's own words, or the rows of a derivation, which is right if each line was so at once.
-    `hints` is the number of a task's hints that were shown. `right` is empty for what counts
-    nothing: a task that is meant to be found by trying, and a warm-up question. The sheet Sketches
+    The sheet Answers has a row for each answer to a prediction, a question or a task of every
+    lesson that a student has begun, made of its `lessons.given.Given`, and one for each of these
+    that is not answered. `attempt` is 1 for the first answer to an item; of later ones, the second
+    is kept where it is judged, and the last, also after a discussion. `given (UTC)` is empty for
+    answers from before times were kept. `late` is 1 for an answer after the vote was closed, and
+    empty if there was none. `result` is
+    "answered", "skipped", "open" (neither), "passed" (a task), or "unknown" (the options have
+    changed since). `right` is 1 or 0; `chosen` and `reason` are the letters of options; `value` is
+    a number, and `text` the student's own words, or the rows of a derivation, which is right if
+    each line was so at once. `hints` is the number of a task's hints that were shown. `right` is
+    empty for what counts nothing: a task that is meant to be found by trying, and a warm-up
+    question. The sheet Sketches
     has the points of drawn curves, in the units of their axes.
 
     Args:
@@ -95,7 +97,11 @@ def class_record(
     """
     members = list(members)
     answers = partial(_answers, votes=votes)
-    about = {"made (UTC)": f"{made:%Y-%m-%d %H:%M:%S}", "OnPath": _version(), "language": language}
+    about = {
+        "made (UTC)": f"{made:%Y-%m-%d %H:%M:%S}",
+        "OnPath": product_version(),
+        "language": language,
+    }
     sheets = [
         Sheet("Answers", ANSWERS, _of_all(members, course, language, answers)),
         Sheet("Sketches", SKETCHES, _of_all(members, course, language, _sketches)),
@@ -136,13 +142,6 @@ def _write(page: Any, number: int, columns: Sequence[str], row: Row, text: Any) 
             page.write_number(number, at, cell)
 
 
-def _version() -> str:
-    try:
-        return version("onpath")
-    except PackageNotFoundError:  # a checkout that is not installed
-        return ""
-
-
 def _student(member: Member) -> dict[str, str | int | float]:
     return {"number": member.number, "nickname": member.name}
 
@@ -159,36 +158,36 @@ def _of_all(members: Iterable[Member], course: Course, language: str, rows: Any)
 
 
 def _answers(lesson: Lesson, notes: Notes, votes: Sequence[Vote]) -> Iterator[Row]:
-    for item, kind, prediction, attempt, given in _predictions(lesson, notes):
+    for item, kind, prediction, given in _predictions(lesson, notes):
         index, second = int(item), kind == "second"
         where = {"step": index + 1, "kind": kind, "item": lesson.steps[index].title}
-        answer = None if given is None else given.answer
-        unknown = (second_key(item) if second else item) in notes.unknown
-        is_lost = unknown and answer is not None and answer.skipped
-        row = {**_predicted(prediction, answer), **(_unknown() if is_lost else {})}
-        when = _when(attempt, given, vote_on(votes, lesson.name, item, second))
-        yield {**where, **when, **row}
+        when = _when(given, vote_on(votes, lesson.name, item, second))
+        yield {**where, **when, **_predicted(prediction, given)}
     for index, step in enumerate(lesson.steps):
         for task in step.tasks():
-            best = notes.tasks.get(task.id)
-            row: dict[str, str | int | float] = {
-                "step": index + 1,
-                "kind": "task",
-                "item": task.id,
-                "result": "open" if best is None else "passed",
-                "hints": notes.hints.get(task.id, 0),
-            }
-            if not task.exploratory:
-                row["right"] = int(best is not None)
-            yield {**row, **({"value": best} if task.best and best is not None else {})}
+            for given in given_to(notes, task.id) or [None]:
+                row: dict[str, str | int | float] = {
+                    "step": index + 1,
+                    "kind": "task",
+                    "item": task.id,
+                    "result": "open" if given is None else "passed",
+                    "hints": notes.hints.get(task.id, 0) if given is None else given.hints,
+                    **_when(given, None),
+                }
+                if not task.exploratory:
+                    row["right"] = int(given is not None)
+                has_value = task.best and given is not None and given.number is not None
+                yield {**row, **({"value": given.number} if has_value else {})}
         yield from _questions(lesson, index, notes, votes)
 
 
-def _when(attempt: int, given: Given | None, vote: Vote | None) -> Row:
-    """Which of the answers to an item it is, when it was given, and whether that was late."""
+def _when(given: Given | None, vote: Vote | None) -> Row:
+    """Which of the answers to an item it is, of which lesson, when it was given, and whether that
+    was late."""
     if given is None:
         return {}
-    row: dict[str, str | int] = {"attempt": attempt}
+    row: dict[str, str | int] = {"attempt": given.attempt}
+    row |= {"lesson version": given.lesson, "OnPath": given.product}
     if given.time:
         row["given (UTC)"] = f"{datetime.fromtimestamp(given.time, UTC):%Y-%m-%d %H:%M:%S}"
         row |= {} if vote is None else {"late": int(is_late(vote, given))}
@@ -197,25 +196,24 @@ def _when(attempt: int, given: Given | None, vote: Vote | None) -> Row:
 
 def _predictions(
     lesson: Lesson, notes: Notes
-) -> Iterator[tuple[str, str, Prediction, int, Given | None]]:
-    """Item, kind, number and event of each answer to a prediction, or none if it is open; those
-    of the last time it was asked again are of the kind "second"."""
+) -> Iterator[tuple[str, str, Prediction, Given | None]]:
+    """Item, kind and event of each answer to a prediction, or none if it is open; those of the last
+    time it was asked again are of the kind "second"."""
     for index, step in enumerate(lesson.steps):
         for prediction in step.predictions():
             item, asked = str(index), notes.asked_again.count(str(index))
-            given = list(enumerate(given_to(notes, item), 1))
-            first = [each for each in given if not each[1].round]
-            for attempt, each in first or [(0, None)]:
-                yield item, "prediction", prediction, attempt, each
-            again = [each for each in given if asked and each[1].round == asked]
-            for attempt, each in again or [(0, None)] * bool(asked):
-                yield item, "second", prediction, attempt, each
+            given = given_to(notes, item)
+            for each in [each for each in given if not each.round] or [None]:
+                yield item, "prediction", prediction, each
+            again = [each for each in given if asked and each.round == asked]
+            for each in again or [None] * bool(asked):
+                yield item, "second", prediction, each
 
 
 def _sketches(lesson: Lesson, notes: Notes) -> Iterator[Row]:
-    for item, kind, _, attempt, given in _predictions(lesson, notes):
+    for item, kind, _, given in _predictions(lesson, notes):
         if given is not None and given.answer is not None:
-            where = {"step": int(item) + 1, "kind": kind, "attempt": attempt}
+            where = {"step": int(item) + 1, "kind": kind, "attempt": given.attempt}
             for time, drawn in zip(given.answer.times, given.answer.values, strict=True):
                 yield {**where, "time": time, "drawn": drawn}
 
@@ -229,39 +227,35 @@ def _questions(lesson: Lesson, index: int, notes: Notes, votes: Sequence[Vote]) 
         title = f"{step.title} ({count})" if len(asked) > 1 else step.title
         place = {"step": index + 1, "item": title, "kind": KINDS_ASKED[type(block)]}
         vote = vote_on(votes, lesson.name, item)
-        for attempt, given in [*enumerate(given_to(notes, item), 1)] or [(0, None)]:
-            yield {**place, **_when(attempt, given, vote), **_answered(block, item, given, notes)}
+        for given in given_to(notes, item) or [None]:
+            yield {**place, **_when(given, vote), **_answered(block, given)}
 
 
-def _answered(block: Block, item: str, given: Given | None, notes: Notes) -> Row:
+def _answered(block: Block, given: Given | None) -> Row:
     """The answer to a question."""
     if given is None:
-        return _unknown() if item in notes.unknown else {"result": "open"}
-    if isinstance(block, NumberQuestion) and given.number is not None:
-        return {
-            "result": "answered",
-            "value": given.number,
-            "right": int(block.accepts(given.number)),
-        }
-    if isinstance(block, Quiz) and given.answer is not None:
-        is_lost = given.answer.option is None and item in notes.unknown
-        row = _unknown() if is_lost else _chosen(block, given.answer.option)
-        return row | {"right": ""} if block.warm_up else row
-    if isinstance(block, Derivation) and given.text:
-        right = all(state.good for state in judged(block, given.text))
-        return {"result": "answered", "right": int(right), "text": given.text}
-    return {"result": "answered" if given.text else "open", "text": given.text}
-
-
-def _predicted(prediction: Prediction, answer: Answer | None) -> Row:
-    """What was predicted, how sure the student is, and why."""
-    if answer is None:
         return {"result": "open"}
-    if answer.skipped:
+    if given.lost:
+        return _unknown()
+    right = {} if given.right is None else {"right": int(given.right)}
+    if isinstance(block, NumberQuestion) and given.number is not None:
+        return {"result": "answered", "value": given.number, **right}
+    if isinstance(block, Quiz) and given.answer is not None:
+        return {**_chosen(block, given.answer.option), **({} if block.warm_up else right)}
+    return {"result": "answered" if given.text else "open", "text": given.text, **right}
+
+
+def _predicted(prediction: Prediction, given: Given | None) -> Row:
+    """What was predicted, how sure the student is, and why."""
+    answer = None if given is None else given.answer
+    if given is None or answer is None:
+        return {"result": "open"}
+    if answer.skipped and not given.lost:
         return {"result": "skipped"}
-    row = {"result": "answered"}
-    if not isinstance(prediction, Sketch):
+    row = _unknown() if given.lost else dict[str, Any](result="answered")
+    if not isinstance(prediction, Sketch) and not given.lost:
         row |= _chosen(prediction, answer.option)
+        row |= {} if given.right is None else {"right": int(given.right)}
     known = answer.reason is not None and answer.reason < len(prediction.reasons)
     reason = {"reason": LETTERS[answer.reason]} if known and answer.reason is not None else {}
     return {**row, "sure": answer.sure, **reason, "why": answer.why}
@@ -270,8 +264,7 @@ def _predicted(prediction: Prediction, answer: Answer | None) -> Row:
 def _chosen(block: Choice | Quiz, option: int | None) -> dict[str, Any]:
     if option is None or option >= len(block.options):
         return {"result": "open"}
-    right = int(block.options[option].right)
-    return {"result": "answered", "chosen": LETTERS[option], "right": right}
+    return {"result": "answered", "chosen": LETTERS[option]}
 
 
 def _unknown() -> dict[str, Any]:

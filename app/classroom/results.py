@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+from onpath.lessons.given import Answer, Given
 from onpath.lessons.kept.option_keys import second_key
-from onpath.lessons.progress import Answer, Given, Notes, Progress, Truth, given_to
+from onpath.lessons.progress import Notes, Progress, Truth, given_to
 from onpath.lessons.schema import Choice, Lesson, NumberQuestion, Prediction, Quiz, Step
-from onpath.lessons.votes import Vote, counted, is_late, is_skipped
+from onpath.lessons.votes import Vote, counted, is_late
 
 Asked = Prediction | Quiz | NumberQuestion
 
@@ -113,24 +114,12 @@ def distribution(
         numbers=tuple(each.number for each in given if each.number is not None),
         here=len(is_here),
         away=len(notes) - len(is_here),
-        answered=sum(one is not None and not is_skipped(one) for one in is_here),
+        answered=sum(one is not None and not one.is_skipped for one in is_here),
         late=sum(
             one is None and any(is_late(vote, each) for each in given_to(of, item))
             for of, one in both
         ),
     )
-
-
-def is_right(block: Asked, given: Given) -> bool:
-    """Whether an answer is right; of a drawn curve it is not said."""
-    if isinstance(block, NumberQuestion):
-        return given.number is not None and block.accepts(given.number)
-    option = None if given.answer is None else given.answer.option
-    if not isinstance(block, Choice | Quiz) or option is None:
-        return False
-    if option not in range(len(block.options)):
-        return False
-    return block.options[option].right
 
 
 def is_same(one: Given, other: Given) -> bool:

@@ -13,9 +13,10 @@ from onpath.app.classroom.results import Distribution
 from onpath.app.common.palette import OF_SIDE, SLATE
 from onpath.app.common.templates import render
 from onpath.lessons.action_schema import RobotName
+from onpath.lessons.given import MOST_POINTS as MOST_OF_TRUTH
+from onpath.lessons.given import Answer
 from onpath.lessons.measures.thinning import peaks
-from onpath.lessons.progress import MOST_POINTS as MOST_OF_TRUTH
-from onpath.lessons.progress import Answer, Truth
+from onpath.lessons.progress import Truth
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import Sketch
 from onpath.lessons.sides import ROLES

@@ -23,7 +23,8 @@ from onpath.app.view.report_facts import (
     quizzes,
 )
 from onpath.lessons.action_schema import RobotName
-from onpath.lessons.progress import Answer, Truth
+from onpath.lessons.given import Answer
+from onpath.lessons.progress import Truth
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import (
     Derivation,

@@ -15,7 +15,8 @@ from matplotlib.figure import Figure
 
 from onpath.app.common.palette import OF_SIDE, SELECTED
 from onpath.lessons.action_schema import RobotName
-from onpath.lessons.progress import Answer, Truth
+from onpath.lessons.given import Answer
+from onpath.lessons.progress import Truth
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import Sketch
 from onpath.lessons.sides import ROLES

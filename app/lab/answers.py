@@ -8,7 +8,7 @@ from msgspec.structs import replace
 
 from onpath.app.common.visible_text import readable
 from onpath.app.lab.sketches import sketched
-from onpath.lessons.progress import MOST_TEXT, SURENESS, Answer
+from onpath.lessons.given import MOST_TEXT, SURENESS, Answer
 from onpath.lessons.schema import Prediction, Sketch
 from onpath.models.errors import CodedError
 

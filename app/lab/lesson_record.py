@@ -10,8 +10,9 @@ import numpy as np
 from onpath.app.lab.events import LabEvent
 from onpath.app.lab.simulation import Simulation
 from onpath.lessons.action_schema import RobotName
+from onpath.lessons.given import MOST_POINTS
 from onpath.lessons.measures.thinning import peaks
-from onpath.lessons.progress import MOST_POINTS, Truth
+from onpath.lessons.progress import Truth
 from onpath.lessons.record import ROBOTS, Happening, Record
 from onpath.lessons.sides import ROLES
 from onpath.lessons.task_schema import Better, Once

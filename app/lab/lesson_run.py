@@ -21,8 +21,9 @@ from onpath.app.lab.task_judge import TaskJudge
 from onpath.lessons.checks import Verdict
 from onpath.lessons.concept_test.on_route import first_step
 from onpath.lessons.course import Course
+from onpath.lessons.given import Answer
 from onpath.lessons.kept.known_choices import of_today
-from onpath.lessons.progress import Answer, Progress, Truth
+from onpath.lessons.progress import Progress, Truth
 from onpath.lessons.schema import Lesson, Prediction, Sketch
 from onpath.lessons.words import Words
 from onpath.models.errors import CodedError
@@ -256,7 +257,7 @@ class LessonRun(LessonState):
         """Evaluate the tasks now; also before a run ends, with which its record is lost."""
         if self.step is not None and self.step.tasks():
             for task, value, way in self._judge.follow(simulation, self.step.tasks(), self.words):
-                self._pass(task.id, value, way)
+                self.note_passed(task.id, value, way)
 
     def truth(self, simulation: Simulation) -> Truth | None:
         """The actual curve of the predicted quantity, from now or from the last demonstration."""
@@ -265,14 +266,6 @@ class LessonRun(LessonState):
             return None if found is None else self.notes.truths.get(found[0])
         self._trace.follow(simulation)
         return self._trace.truth()
-
-    def _pass(self, task: str, value: float, way: int) -> None:
-        notes = self.notes
-        best = notes.tasks.get(task)
-        if best is None or value < best:
-            self.note(tasks={**notes.tasks, task: round(value, 3)})
-        if way != notes.ways.get(task, 0):
-            self.note(ways={**notes.ways, task: way})
 
     def _go(self, index: int, lab: LessonLab) -> None:
         lesson = self.lesson

@@ -6,20 +6,23 @@ It does not depend on a lab; `app.lab.lesson_run` plays the steps on one.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from msgspec.structs import replace
 
+from onpath.app.common.product import product_version
 from onpath.app.lab.answers import kept_number, kept_text
 from onpath.lessons.adaptive.branches import is_shown
 from onpath.lessons.course import Course
 from onpath.lessons.derivation.typed import read_formula, spellings
-from onpath.lessons.kept.known_choices import mark_of, marks_of
-from onpath.lessons.kept.option_keys import second_key, why_key
+from onpath.lessons.given import MOST_TEXT, Answer, Given
+from onpath.lessons.kept.known_choices import marked
+from onpath.lessons.kept.option_keys import second_key
 from onpath.lessons.pace import Pace
-from onpath.lessons.progress import MOST_TEXT, Answer, Given, Notes, Progress, given_to
+from onpath.lessons.progress import Notes, Progress, given_to
+from onpath.lessons.right import is_right
 from onpath.lessons.routes import Route
 from onpath.lessons.schema import (
     Block,
@@ -89,6 +92,7 @@ class LessonState:
         self.settled: tuple[str, ...] = ()
         self.answers_given = 0
         self.clock = clock
+        self._product = product_version()
         self._told_of = self.progress, _latest_keys(self.progress)
 
     @property
@@ -195,11 +199,9 @@ class LessonState:
         notes = dict(self.progress.notes)
         for name, known in notes.items():
             if asked := {each.item for each in self.votes if each.lesson == name}:
-                left = {
-                    kind: {k: v for k, v in getattr(known, kind).items() if k not in asked}
-                    for kind in ("answers", "second", "truths", "quiz", "numbers")
-                }
-                notes[name] = replace(known, **left)
+                truths = {k: truth for k, truth in known.truths.items() if k not in asked}
+                given = tuple(each for each in known.given if each.item not in asked)
+                notes[name] = replace(known, truths=truths, given=given)
         return replace(self.progress, notes=notes)
 
     def _is_beyond_a_vote(self, name: str, index: int) -> bool:
@@ -266,12 +268,7 @@ class LessonState:
         """Ask for the open step's prediction again, even if it was never answered."""
         if (found := self.prediction()) is None:
             return
-        key, notes = found[0], self.notes
-        self.note(
-            asked_again=(*notes.asked_again, key)[-MOST_ROUNDS:],
-            second={k: answer for k, answer in notes.second.items() if k != key},
-            unknown=tuple(each for each in notes.unknown if each != second_key(key)),
-        )
+        self.note(asked_again=(*self.notes.asked_again, found[0])[-MOST_ROUNDS:])
 
     @property
     def waits(self) -> bool:
@@ -337,14 +334,7 @@ class LessonState:
         quiz = _block(lesson, index, block)
         if not isinstance(quiz, Quiz) or option not in range(len(quiz.options)):
             raise CodedError("lesson.no_such_option")
-        item = f"{index}.{block}"
-        marks = mark_of(lesson, item, option)
-        given = Given(item, answer=Answer(option=option), mark=marks.get(item, ""))
-        notes = self._notes_on(lesson)
-        before = None if item in notes.unknown else notes.quiz.get(item)
-        if self._give(lesson, given, sent):
-            self._note_second(lesson, item, before, option)
-            self._note_chosen(lesson, item, marks, "quiz", option)
+        self._give(lesson, quiz, Given(f"{index}.{block}", answer=Answer(option=option)), sent)
 
     def answer_number(self, block: int, given: float, sent: Sent = UNSENT) -> None:
         """Answer a question with a number; `block` is its index among its step's blocks.
@@ -353,13 +343,11 @@ class LessonState:
             ValueError: there is no such question, or the answer is not a number.
         """
         lesson, index = self._asked(sent)
-        if not isinstance(_block(lesson, index, block), NumberQuestion):
+        asked = _block(lesson, index, block)
+        if not isinstance(asked, NumberQuestion):
             raise CodedError("lesson.no_such_option")
-        item, number = f"{index}.{block}", kept_number(given)
-        if self._give(lesson, Given(item, number=number), sent):
-            numbers = self._notes_on(lesson).numbers
-            self._note_second(lesson, item, numbers.get(item), number)
-            self._note_on(lesson, numbers={**numbers, item: number})
+        number = kept_number(given)
+        self._give(lesson, asked, Given(f"{index}.{block}", number=number), sent)
 
     def answer_in_words(self, block: int, typed: str, sent: Sent = UNSENT) -> None:
         """Answer an open question, or take the answer back with an empty one; or answer the next
@@ -373,19 +361,25 @@ class LessonState:
         if not isinstance(asked, OpenQuestion | Derivation):
             raise CodedError("lesson.no_such_option")
         item, text = f"{index}.{block}", kept_text(typed)
-        written = self._notes_on(lesson).written
         if isinstance(asked, Derivation):
             read_formula(text, spellings(asked.names), ",")
-            text = f"{written.get(item, '')}\n{text}".strip()[:MOST_TEXT]
-        if self._give(lesson, Given(item, text=text), sent):
-            others = {k: kept for k, kept in written.items() if k != item}
-            self._note_on(lesson, written={**others, **({item: text} if text else {})})
+            before = self._notes_on(lesson).written.get(item, "")
+            text = f"{before}\n{text}".strip()[:MOST_TEXT]
+        self._give(lesson, asked, Given(item, text=text), sent)
 
-    def _note_second(self, lesson: Lesson, item: str, before: float | None, given: float) -> None:
-        """Note that a question is answered again, and otherwise than before."""
-        if before not in (None, given) and lesson.name not in self.course.tests:
-            twice = self._notes_on(lesson).twice
-            self._note_on(lesson, twice=tuple(dict.fromkeys((*twice, item))))
+    def note_passed(self, task: str, value: float, way: int) -> None:
+        """A task of the open lesson has been passed.
+
+        Args:
+            value: its `Task.best`, or 0.
+            way: see `lessons.checks.way_of`.
+        """
+        lesson, notes = self.lesson, self.notes
+        best = notes.tasks.get(task)
+        better = best is None or value < best
+        if lesson is not None and (better or way != notes.ways.get(task, 0)):
+            number = round(value, 3) if best is None else min(best, round(value, 3))
+            self._keep(lesson, Given(task, number=number, right=True, way=way), UNSENT)
 
     def settle(self, key: str) -> None:
         """An answer cannot be taken: its browser need not send it again."""
@@ -411,28 +405,38 @@ class LessonState:
             raise CodedError("lesson.no_such_option")
         return self.course.lesson(sent.lesson, self.progress.language), sent.step
 
-    def _give(self, lesson: Lesson, given: Given, sent: Sent) -> bool:
-        """Keep one more answer to an item; returns False if it was here before.
+    def _give(self, lesson: Lesson, block: Block, given: Given, sent: Sent) -> None:
+        """Keep one more answer to a prediction or a question; see `_keep`."""
+        self._keep(lesson, replace(marked(lesson, given), right=is_right(block, given)), sent)
 
-        When an item is asked, the first answer is kept, and of changes of it the last one; when it
-        is asked again, the first answer.
+    def _keep(self, lesson: Lesson, given: Given, sent: Sent) -> None:
+        """Keep one more answer to an item, unless it was here before or says the same again.
+
+        Of those before the item was asked again, and of those after the last time, not all are
+        kept; see `_kept`.
         """
         notes = self._notes_on(lesson)
-        known = [each for each in notes.given if each.key]
-        if sent.key and any(each.key == sent.key for each in known):
-            return False
-        asked = notes.asked_again.count(given.item)
-        new = replace(given, time=round(self.clock(), 3), round=asked, key=sent.key)
-        same = (*given_to(notes, given.item), new)
-        others = (each for each in notes.given if each.item != given.item)
-        first, again = [each for each in same if not each.round], [e for e in same if e.round]
-        latest = [each for each in again if each.round == again[-1].round]
-        kept = (*first[:1], *first[1:][-1:], *latest[:1])
-        self._note_on(lesson, given=(*others, *kept))
-        if sent.key and new not in kept:
+        if sent.key and any(each.key == sent.key for each in notes.given):
+            return
+        before, asked = given_to(notes, given.item), notes.asked_again.count(given.item)
+        new = replace(
+            given,
+            attempt=_attempt(before),
+            time=round(self.clock(), 3),
+            round=asked,
+            hints=notes.hints.get(given.item, 0),
+            key=sent.key,
+            lesson=lesson.version,
+            product=self._product,
+        )
+        if before and _says(before[-1]) == _says(new):
             self.settle(sent.key)
+            return
+        latest = [each for each in (*before, new) if each.round == asked]
+        first = [each for each in before if not each.round] if asked else []
+        others = (each for each in notes.given if each.item != given.item)
+        self._note_on(lesson, given=(*others, *_kept(first), *_kept(latest)))
         self.answers_given += 1
-        return True
 
     def set_language(self, language: str) -> None:
         """Set the language of texts and interface."""
@@ -441,25 +445,9 @@ class LessonState:
         self.version += 1
 
     def note_answer(self, answer: Answer, sent: Sent = UNSENT) -> None:
-        """Store an answer to a prediction, the second one if it is asked again.
-
-        One that comes after another answer to the same question, such as a changed one, is only
-        kept among `Notes.given`. Who has skipped a prediction may still make it.
-        """
-        lesson, item, _ = self.predicted(sent)
-        again = item in self._notes_on(lesson).asked_again
-        marks = marks_of(lesson, item, answer, again)
-        marked = second_key(item) if again else item
-        given = Given(
-            item,
-            answer=answer,
-            mark=marks.get(marked, ""),
-            why_mark=marks.get(why_key(marked), ""),
-        )
-        kind = "second" if again else "answers"
-        before = getattr(self._notes_on(lesson), kind).get(item)
-        if self._give(lesson, given, sent) and (before is None or before.skipped):
-            self._note_chosen(lesson, item, marks, kind, answer)
+        """Store an answer to a prediction. Who has skipped one may still make it."""
+        lesson, item, prediction = self.predicted(sent)
+        self._give(lesson, prediction, Given(item, answer=answer), sent)
 
     def predicted(self, sent: Sent = UNSENT) -> tuple[Lesson, str, Prediction]:
         """Lesson, key and prediction that an answer belongs to: what it names, or the open step's.
@@ -486,19 +474,6 @@ class LessonState:
         noted = second_key(key) if key in notes.asked_again else key
         return noted in notes.unknown
 
-    def _note_chosen(
-        self, lesson: Lesson, key: str, marks: dict[str, str], kind: str, chosen: object
-    ) -> None:
-        """Store a choice in a field of the notes, with the marks that identify it later."""
-        notes = self._notes_on(lesson)
-        noted = second_key(key) if kind == "second" else key
-        self._note_on(
-            lesson,
-            **{kind: {**getattr(notes, kind), key: chosen}},
-            marks={**notes.marks, **marks},
-            unknown=tuple(each for each in notes.unknown if each != noted),
-        )
-
     def note(self, **changes: Any) -> None:
         """Change the saved notes on the open lesson."""
         self._change(self.progress.lesson, changes)
@@ -518,6 +493,24 @@ class LessonState:
 def _latest_keys(progress: Progress) -> tuple[str, ...]:
     given = [each for notes in progress.notes.values() for each in notes.given if each.key]
     return tuple(each.key for each in sorted(given, key=lambda each: each.time)[-MOST_SENT:])
+
+
+def _attempt(before: Sequence[Given]) -> int:
+    """The number of an answer; one takes the place of an answer that cannot be identified."""
+    return before[-1].attempt + (not before[-1].lost) if before else 1
+
+
+def _says(given: Given) -> tuple[object, ...]:
+    return given.round, given.answer, given.number, given.text, given.way, given.lost
+
+
+def _kept(given: Sequence[Given]) -> list[Given]:
+    """The first answer, the first that was not skipped, the second one where it is judged (what is
+    right is told after it), and the last one."""
+    first = next((each for each in given if not each.is_skipped), None)
+    second = given[1:2] if given and given[0].right is not None else ()
+    wanted = (*given[:1], first, *second, *given[-1:])
+    return [each for each in given if each in wanted]
 
 
 def _block(lesson: Lesson, index: int, block: int) -> Block | None:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from onpath.lessons.given import Answer
 from onpath.lessons.measures.thinning import peaks
-from onpath.lessons.progress import Answer
 from onpath.lessons.schema import Sketch
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError

@@ -12,7 +12,8 @@ from onpath.lessons.action_schema import Script
 from onpath.lessons.checks import bound_words
 from onpath.lessons.derivation.judged import LineState, points_of
 from onpath.lessons.derivation.typed import spellings
-from onpath.lessons.progress import Answer, Truth
+from onpath.lessons.given import Answer
+from onpath.lessons.progress import Truth
 from onpath.lessons.record import QUANTITIES, ROBOTS
 from onpath.lessons.schema import Choice, Derivation, Lesson, NumberQuestion, Quiz, Sketch
 from onpath.lessons.sides import robot_names

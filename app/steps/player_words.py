@@ -13,6 +13,7 @@ _PLAIN = (
         "lesson.no_number",
         "answer.check",
         "answer.keep",
+        "answer.price",
         "answer.carried",
         "answer.line",
         "formula.missing",

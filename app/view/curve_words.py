@@ -7,7 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from onpath.lessons.action_schema import RobotName
-from onpath.lessons.progress import Answer, Truth
+from onpath.lessons.given import Answer
+from onpath.lessons.progress import Truth
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import Sketch
 from onpath.lessons.sides import ROLES

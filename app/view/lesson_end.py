@@ -23,7 +23,8 @@ from onpath.app.view.step_navigation import RECORD, LessonButton, Sent
 from onpath.lessons.concept_test.concept_test import BEFORE
 from onpath.lessons.concept_test.on_route import last_test
 from onpath.lessons.concept_test.titles import titles_of_tests
-from onpath.lessons.progress import Answer, Truth
+from onpath.lessons.given import Answer
+from onpath.lessons.progress import Truth
 from onpath.lessons.schema import Prediction, Sketch
 from onpath.lessons.sides import robot_names
 from onpath.lessons.words import Words

@@ -12,7 +12,7 @@ import msgspec
 
 from onpath.app.channel.lesson_messages import LessonMessage, MeasuredMessage
 from onpath.app.common.templates import part_of_page
-from onpath.app.steps.block_data import answer_data, block_data, curves_data, script_data
+from onpath.app.steps.block_data import block_data, curves_data, script_data
 from onpath.app.steps.step_html import StepPart, part_of, step_html
 from onpath.app.view.lesson_end import lesson_end
 from onpath.app.view.lesson_view import LessonView
@@ -20,8 +20,8 @@ from onpath.app.view.lessons import route_line
 from onpath.app.view.step_navigation import pager_of
 from onpath.app.view.symbol_geometry import has_meaning
 from onpath.lessons.derivation.judged import judged
+from onpath.lessons.given import Answer, Given
 from onpath.lessons.option_order import LETTERS
-from onpath.lessons.progress import Answer
 from onpath.lessons.schema import (
     Choice,
     Derivation,
@@ -37,6 +37,8 @@ from onpath.lessons.task_schema import Task
 from onpath.models.systems.robots import Robot
 
 END = "end"
+TOLD = ("attempt", "answer", "number", "text", "way")
+"""What a page is told of an answer."""
 """Name of the section that stands for the end of a lesson."""
 
 
@@ -219,21 +221,21 @@ def _notes(run: LessonView) -> dict[str, Any]:
     notes, found, answer, key = run.notes, run.prediction(), run.answer(), f"{run.index}."
     asked = "" if found is None else found[0]
     known = answer is not None and not run.is_unknown()
-    here = {
-        name: {k: v for k, v in getattr(notes, name).items() if k.startswith(key)}
-        for name in ("quiz", "numbers", "written")
-    }
-    here["quiz"] = {k: v for k, v in here["quiz"].items() if k not in notes.unknown}
+    here = [each for each in notes.given if each.way is not None or each.item.startswith(key)]
+    if answer is not None:
+        here.append(Given(asked, answer=answer if known else Answer()))
     truth = None if run.playing or run.is_voting else run.truth
     return {
         "step": run.index,
         "seen": notes.seen,
-        "answers": {} if answer is None else {asked: answer_data(answer) if known else {}},
         "truths": {} if truth is None else {asked: curves_data(truth)},
         "played": dict.fromkeys(notes.played, True),
-        "tasks": notes.tasks,
-        "ways": notes.ways,
         "hints": notes.hints,
-        "first": {},
-        **here,
+        "given": [_told(each) for each in here if not each.lost],
     }
+
+
+def _told(given: Given) -> dict[str, Any]:
+    """An answer without what is right, which a block tells when it is time to."""
+    told = {name: getattr(given, name) for name in TOLD}
+    return msgspec.to_builtins(Given(item=given.item, **told))

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
 from msgspec.structs import replace
 
 from onpath.app.lab.lesson_state import LessonState
-from onpath.lessons.progress import Answer, Notes, Truth
+from onpath.lessons.given import Answer, Given
+from onpath.lessons.progress import Notes, Truth
 from onpath.lessons.schema import (
+    Block,
     Choice,
     Derivation,
     Lesson,
@@ -109,27 +110,28 @@ def _of_kind(lesson: Lesson, kind: type[T]) -> dict[str, T]:
 
 def fitting(lesson: Lesson, notes: Notes) -> tuple[Notes, int]:
     """Notes that match a lesson, which may have changed since, and the number that do not."""
-    asked, questions = predictions(lesson), quizzes(lesson)
+    asked = predictions(lesson)
+    blocks = {**asked, **quizzes(lesson), **numbers(lesson), **open_questions(lesson)}
     tasks = {task.id for task in lesson.tasks()}
-    kept: dict[str, dict[str, Any]] = {
-        "answers": _kept(notes.answers, lambda k, a: k in asked and _answers(asked[k], a)),
-        "second": _kept(notes.second, lambda k, a: k in asked and _answers(asked[k], a)),
-        "truths": _kept(notes.truths, lambda k, t: k in asked and _is_true_of(asked[k], t)),
-        "tasks": _kept(notes.tasks, lambda k, best: k in tasks and bool(np.isfinite(best))),
-        "quiz": _kept(
-            notes.quiz, lambda k, i: k in questions and 0 <= i < len(questions[k].options)
-        ),
-        "numbers": _kept(
-            notes.numbers, lambda k, given: k in numbers(lesson) and bool(np.isfinite(given))
-        ),
-        "written": _kept(notes.written, lambda k, _: k in open_questions(lesson)),
-    }
-    strange = sum(len(getattr(notes, name)) - len(kept[name]) for name in kept)
-    return replace(notes, seen=min(notes.seen, len(lesson.steps)), **kept), strange
+    truths = {k: t for k, t in notes.truths.items() if k in asked and _is_true_of(asked[k], t)}
+    given = tuple(e for e in notes.given if _fits(e, blocks.get(e.item), e.item in tasks))
+    lost = {each.item for each in notes.given} - {each.item for each in given}
+    kept = replace(notes, seen=min(notes.seen, len(lesson.steps)), truths=truths, given=given)
+    return kept, len(lost) + len(notes.truths) - len(truths)
 
 
-def _kept(notes: dict[str, Any], fits: Callable[[str, Any], bool]) -> dict[str, Any]:
-    return {key: note for key, note in notes.items() if fits(key, note)}
+def _fits(given: Given, block: Block | None, is_task: bool) -> bool:
+    answer = given.answer
+    if given.way is not None:
+        return is_task and given.number is not None and bool(np.isfinite(given.number))
+    if isinstance(block, Prediction):
+        return answer is not None and _answers(block, answer)
+    if isinstance(block, Quiz):
+        option = None if answer is None else answer.option
+        return given.lost or option in range(len(block.options))
+    if isinstance(block, NumberQuestion):
+        return given.number is not None and bool(np.isfinite(given.number))
+    return isinstance(block, OpenQuestion | Derivation) and answer is None and given.number is None
 
 
 def _answers(prediction: Prediction, answer: Answer) -> bool:

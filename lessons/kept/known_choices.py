@@ -6,32 +6,30 @@ is unknown. A curve without a mark is shown if the step still asks for a curve.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from msgspec.structs import replace
 
 from onpath.lessons.course import Course
-from onpath.lessons.kept.option_keys import second_key, why_key
-from onpath.lessons.progress import Answer, Given, Notes, Progress
-from onpath.lessons.schema import Choice, Lesson, Quiz, Sketch
+from onpath.lessons.given import Answer, Given
+from onpath.lessons.kept.option_keys import why_key
+from onpath.lessons.progress import Notes, Progress
+from onpath.lessons.right import is_right
+from onpath.lessons.schema import Block, Choice, Lesson, Quiz, Sketch
 
 
-def marks_of(lesson: Lesson, key: str, answer: Answer, second: bool = False) -> dict[str, str]:
-    """The marks to keep with an answer to a prediction, so that it can be identified later.
-
-    Args:
-        key: of the prediction in the notes.
-        second: whether it is the answer after a discussion.
-    """
-    mark_key = second_key(key) if second else key
-    marks = mark_of(lesson, key, 0 if answer.times else answer.option, mark_key)
-    return {**marks, **mark_of(lesson, why_key(key), answer.reason, why_key(mark_key))}
+def marked(lesson: Lesson, given: Given) -> Given:
+    """An answer with the keys of its option and its reason, by which it is identified later."""
+    if given.answer is None:
+        return given
+    place = 0 if given.answer.times else given.answer.option
+    why_mark = _mark(lesson, why_key(given.item), given.answer.reason)
+    return replace(given, mark=_mark(lesson, given.item, place), why_mark=why_mark)
 
 
-def mark_of(lesson: Lesson, key: str, index: int | None, mark_key: str = "") -> dict[str, str]:
-    """The mark to keep with the index of an option, under `mark_key`, by default `key`."""
+def _mark(lesson: Lesson, key: str, index: int | None) -> str:
     keys = lesson.keys.get(key, ())
-    return {mark_key or key: keys[index]} if index is not None and index < len(keys) else {}
+    return keys[index] if index is not None and index < len(keys) else ""
 
 
 def of_today(course: Course, progress: Progress, only: str = "") -> Progress:
@@ -53,47 +51,30 @@ def of_today(course: Course, progress: Progress, only: str = "") -> Progress:
 
 def known_notes(lesson: Lesson, notes: Notes) -> Notes:
     """Notes on a lesson with the present indices of the options; see `of_today`."""
-    search = _Search(lesson, notes, set(notes.unknown))
-    answers = {key: search.answer(key, key, each) for key, each in notes.answers.items()}
-    second = {key: search.answer(key, second_key(key), each) for key, each in notes.second.items()}
-    quiz = {key: search.index(key, key, index) for key, index in notes.quiz.items()}
-    search.lost.update(key for key, index in quiz.items() if index is None)
-    found = {key: index for key, index in quiz.items() if index is not None}
-    unknown = tuple(sorted(search.lost))
-    given = tuple(map(search.given, notes.given))
-    return replace(notes, answers=answers, second=second, quiz=found, unknown=unknown, given=given)
+    search = _Search(lesson)
+    return replace(notes, given=tuple(map(search.given, notes.given)))
 
 
 @dataclass(frozen=True, slots=True)
 class _Search:
-    """Looks for kept choices in the present lesson.
-
-    Attributes:
-        lost: keys of the choices that cannot be identified.
-    """
+    """Looks for kept choices in the present lesson."""
 
     lesson: Lesson
-    notes: Notes
-    lost: set[str] = field(default_factory=set[str])
-
-    def index(self, key: str, mark_key: str, index: int) -> int | None:
-        """The present index of a chosen option; None if it cannot be identified."""
-        return self._index(key, self.notes.marks.get(mark_key, ""), index)
-
-    def answer(self, key: str, mark_key: str, answer: Answer) -> Answer:
-        """An answer with the present indices; without choice and curve if it is lost."""
-        marks = self.notes.marks
-        found = self._answer(key, marks.get(mark_key, ""), marks.get(why_key(mark_key), ""), answer)
-        if found.skipped and not answer.skipped:
-            self.lost.add(mark_key)
-        return found
 
     def given(self, given: Given) -> Given:
-        """One of the answers that were given; see `answer`."""
-        if given.answer is None:
-            return given
-        found = self._answer(given.item, given.mark, given.why_mark, given.answer)
-        return given if found == given.answer else replace(given, answer=found)
+        """An answer with the present indices; without choice and curve if it is lost.
+
+        One from before it was kept whether an answer is right is judged now.
+        """
+        if given.answer is not None:
+            found = self._answer(given.item, given.mark, given.why_mark, given.answer)
+            lost = given.lost or (found.skipped and not given.answer.skipped)
+            if found != given.answer or lost != given.lost:
+                given = replace(given, answer=found, lost=lost)
+        block = self._asked(given.item)
+        if given.right is None and block is not None and not given.lesson:
+            given = replace(given, right=is_right(block, given))
+        return given
 
     def _index(self, key: str, mark: str, index: int) -> int | None:
         keys = self.lesson.keys.get(key)
@@ -120,8 +101,13 @@ class _Search:
         is_curve = isinstance(self._asked(key), Sketch)
         return is_curve and mark in ("", *self.lesson.keys[key])
 
-    def _asked(self, key: str) -> object:
+    def _asked(self, key: str) -> Block | None:
+        """The prediction or the question; None for a task, or if there is none any more."""
         step, _, block = key.partition(".")
-        if block:
-            return self.lesson.steps[int(step)].blocks[int(block)]
-        return next(iter(self.lesson.steps[int(step)].predictions()), None)
+        steps = self.lesson.steps
+        if not step.isdecimal() or int(step) >= len(steps):
+            return None
+        if not block:
+            return next(iter(steps[int(step)].predictions()), None)
+        blocks = steps[int(step)].blocks
+        return blocks[int(block)] if block.isdecimal() and int(block) < len(blocks) else None

@@ -12,7 +12,7 @@ from playwright.sync_api import Browser, expect
 
 from onpath.app.lab import commands as c
 from onpath.app.server.lab_server import LabServer
-from onpath.lessons.progress import Answer
+from onpath.lessons.given import Answer
 from tests.support.browser import Tab, wait_for
 
 pytestmark = pytest.mark.thorough

@@ -28,6 +28,7 @@ from onpath.lessons.problems import LessonError
 from onpath.lessons.progress import Notes, Progress
 from onpath.lessons.schema import Lesson
 from tests.support.built_in import built_in_course
+from tests.support.given import notes_with
 
 COURSE, PROBLEMS = built_in_course()
 TEST = COURSE.lesson(BEFORE, "en")
@@ -48,7 +49,7 @@ def handed_in(test: Lesson, right: Sequence[bool]) -> Notes:
         key: next(i for i, option in enumerate(block.options) if option.right == good)
         for (key, block), good in zip(questions(test).items(), right, strict=True)
     }
-    return Notes(quiz=chosen, handed_in=True)
+    return notes_with(quiz=chosen, handed_in=True)
 
 
 def both(before: Sequence[bool], after: Sequence[bool]) -> Progress:
@@ -143,5 +144,5 @@ def test_only_students_who_handed_in_both_count_and_a_missing_answer_is_wrong() 
     assert (found.students, found.mean_before, found.mean_after, found.gain) == (1, 0, 100, 1)
     empty = Notes(handed_in=True)
     assert right_in(TEST, empty) == none
-    gone = Notes(quiz={"0.1": 99, "77.0": 0}, handed_in=True)  # of another version of the test
+    gone = notes_with(quiz={"0.1": 99, "77.0": 0}, handed_in=True)  # of another version of the test
     assert right_in(TEST, gone) == none

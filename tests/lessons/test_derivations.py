@@ -13,7 +13,7 @@ import pytest
 
 from onpath.lessons.derivation.judged import MOST_LINES, judged, points_of, value_of
 from onpath.lessons.derivation.typed import LONGEST
-from onpath.lessons.progress import MOST_TEXT
+from onpath.lessons.given import MOST_TEXT
 from onpath.lessons.schema import Derivation, Lesson, Text
 from onpath.models.arrays import Array
 from tests.support.built_in import built_in_course

@@ -26,11 +26,13 @@ from onpath.app.storage.lab_state import keep, put_back
 from onpath.app.view.lesson_message import lesson_message
 from onpath.app.view.lesson_view import LessonView
 from onpath.lessons.course import Course, read_course
+from onpath.lessons.given import Answer
 from onpath.lessons.kept.known_choices import of_today
-from onpath.lessons.progress import Answer, Notes, Progress, read_progress
+from onpath.lessons.progress import Progress, read_progress
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.systems.catalogue import FIVE_BAR
 from tests.support.built_in import built_in_course
+from tests.support.given import notes_with
 from tests.support.lab import do, loop_cache
 from tests.support.lesson_texts import LESSON, write_lesson
 from tests.support.record import record
@@ -85,7 +87,8 @@ def shown(lab: Lab) -> tuple[str, dict[str, Any]]:
     run, lesson = lab.lessons, take_page_snapshot(lab, 1.0).lesson
     message = lesson_message(LessonView(run.course, run.words, lesson), lab.simulation.robot)
     assert message.notes is not msgspec.UNSET
-    return "".join(message.sections.values()), message.notes["answers"]
+    given = [each for each in message.notes["given"] if each["item"].isdecimal()]
+    return "".join(message.sections.values()), {each["item"]: each["answer"] for each in given}
 
 
 # Stored by an older version.
@@ -94,7 +97,7 @@ def shown(lab: Lab) -> tuple[str, dict[str, Any]]:
 def test_a_choice_of_an_older_version_is_not_shown_and_it_says_so(tmp_path: Path) -> None:
     lab = returned(course_of(tmp_path), json.loads(OLDER))
     notes, run = lab.lessons.notes, lab.lessons
-    assert notes.unknown == (ASKED, QUIZ) and QUIZ not in notes.quiz
+    assert notes.unknown == {ASKED, QUIZ} and QUIZ not in notes.quiz
     answer = run.answer()
     assert answer is not None and answer.option is None and not run.waits  # the result was seen
     said, answers = shown(lab)
@@ -122,7 +125,7 @@ def test_the_records_of_an_older_version_say_so(tmp_path: Path) -> None:
 def test_a_new_answer_is_known_again(tmp_path: Path) -> None:
     lab = returned(course_of(tmp_path), json.loads(OLDER))
     do(lab, TakeStep(NAME, 7), c.AnswerQuiz(0, 0))
-    assert lab.lessons.notes.unknown == (ASKED,) and lab.lessons.notes.quiz == {QUIZ: 0}
+    assert lab.lessons.notes.unknown == {ASKED} and lab.lessons.notes.quiz == {QUIZ: 0}
     assert not lab.lessons.is_unknown(QUIZ)
 
 
@@ -135,14 +138,14 @@ def test_options_in_another_order_are_found_again(tmp_path: Path) -> None:
     lab = returned(course_of(tmp_path / "after", other), kept)
     answer = lab.lessons.answer()
     assert answer is not None and answer.option == 0 and lab.lessons.notes.quiz == {QUIZ: 0}
-    assert lab.lessons.notes.unknown == () and shown(lab)[1] == {ASKED: {"option": 0}}
+    assert not lab.lessons.notes.unknown and shown(lab)[1] == {ASKED: {"option": 0}}
 
 
 @pytest.mark.parametrize("text", ["that one", "something else"])
 def test_an_option_of_another_text_is_another_one(tmp_path: Path, text: str) -> None:
     kept = chosen(course_of(tmp_path / "before"))
     lab = returned(course_of(tmp_path / "after", changed('"that"', f'"{text}"')), kept)
-    assert lab.lessons.notes.unknown == (ASKED,)
+    assert lab.lessons.notes.unknown == {ASKED}
     assert lab.lessons.notes.quiz == {QUIZ: 1}  # the quiz is the same
     assert ENGLISH("lesson.unknown") in shown(lab)[0]
 
@@ -173,7 +176,7 @@ def test_a_step_that_asks_for_a_curve_now_shows_no_choice(tmp_path: Path) -> Non
     curve = LESSON[LESSON.index('kind = "sketch"') : LESSON.index("# run: And now")]
     curve = curve.replace("seconds = 2.0", "seconds = 1.0")  # as long as the run
     lab = returned(course_of(tmp_path / "after", LESSON[:start] + curve + LESSON[end:]), kept)
-    assert lab.lessons.notes.unknown == (ASKED,)
+    assert lab.lessons.notes.unknown == {ASKED}
 
 
 def test_a_curve_of_other_axes_is_not_shown(tmp_path: Path) -> None:
@@ -220,7 +223,7 @@ def test_every_order_of_the_options_gives_the_option_that_was_chosen(tmp_path: P
         text = changed(THIS + THAT, "".join(lines[i] for i in order))
         course = course_of(tmp_path / str(number), text)
         for at, mark in enumerate(marks):
-            notes = Notes(answers={ASKED: Answer(at)}, marks={ASKED: mark})
+            notes = notes_with(answers={ASKED: Answer(at)}, marks={ASKED: mark})
             found = of_today(course, Progress(notes={NAME: notes})).notes[NAME].answers[ASKED]
             block = course.lesson(NAME, "en").steps[3].predictions()[0]
             assert block.options[found.option].text == texts[at]  # type: ignore[union-attr, index]

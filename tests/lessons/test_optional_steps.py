@@ -11,7 +11,8 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.lesson_state import LessonState
 from onpath.app.view.lessons import lesson_card
 from onpath.lessons.course import Course, read_course
-from onpath.lessons.progress import Notes, Progress
+from onpath.lessons.progress import Progress
+from tests.support.given import notes_with
 from tests.support.lab import do, loop_cache
 from tests.support.lesson_texts import LESSON, write_lesson
 
@@ -46,7 +47,7 @@ def test_a_lesson_is_finished_without_its_optional_steps(tmp_path: Path) -> None
     course = course_with_optional_steps(tmp_path)
     lesson = course.lesson("01-a", "en")
     assert lesson.required_steps() == 7 and len(lesson.required_tasks()) == 1
-    notes = Notes(step=6, seen=7, tasks={"hold": 0.0})
+    notes = notes_with(step=6, seen=7, tasks={"hold": 0.0})
     for seen, finished in ((7, True), (6, False)):
         progress = Progress(notes={"01-a": replace(notes, seen=seen)})
         assert lesson_card(lesson, LessonState(course, progress), "1").finished == finished

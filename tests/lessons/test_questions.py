@@ -22,20 +22,16 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.answers import kept_text
 from onpath.app.lab.lab import Lab
 from onpath.lessons.course import Course, read_course, read_versions
+from onpath.lessons.given import MOST_TEXT, SURENESS, Answer
+from onpath.lessons.kept.known_choices import of_today
 from onpath.lessons.parse import read_lesson
 from onpath.lessons.problems import LessonError
-from onpath.lessons.progress import (
-    MOST_TEXT,
-    SURENESS,
-    Answer,
-    Notes,
-    Progress,
-    read_progress,
-)
+from onpath.lessons.progress import Progress, read_progress
 from onpath.lessons.schema import Choice, NumberQuestion, Quiz
 from onpath.lessons.words import ENGLISH
 from onpath.models.errors import CodedError
 from tests.support.built_in import built_in_course
+from tests.support.given import notes_with
 from tests.support.lab import do, loop_cache
 from tests.support.lesson_texts import LESSON, write_lesson
 from tests.support.record import record
@@ -287,7 +283,8 @@ def test_a_warm_up_question_counts_nothing_in_the_record(tmp_path: Path, drawn: 
     versions, _ = read_versions(tmp_path / "01-a")
     course = Course({"01-a": versions})
     at = f"{len(versions['en'].steps) - 1}.{len(versions['en'].steps[-1].blocks) - 1}"
-    progress = Progress(notes={"01-a": Notes(quiz={at: 0})})
+    marks = {at: versions["en"].keys[at][0]}
+    progress = of_today(course, Progress(notes={"01-a": notes_with(quiz={at: 0}, marks=marks)}))
     rows = record([Member(1, "Ann", progress)], course)["Answers"]
     (row,) = [row for row in rows if row["result"] == "answered"]
     assert row["chosen"] == "A" and row["right"] == ("" if drawn else 1)

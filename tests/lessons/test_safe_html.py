@@ -13,14 +13,15 @@ from hypothesis import strategies as st
 
 from onpath.lessons.adaptive.own_numbers import filled, marked
 from onpath.lessons.formulas import TextError, folded, mathml, reader, to_html
+from onpath.lessons.given import Answer
 from onpath.lessons.parse import read_lesson
 from onpath.lessons.problems import LessonError
-from onpath.lessons.progress import Answer, Notes
 from onpath.lessons.prose import read_prose
 from onpath.lessons.safe_html import ALLOWED, refused, safe
 from onpath.lessons.schema import Choice, Option, Step, Text
 from onpath.lessons.words import ENGLISH
 from tests.support.built_in import built_in_course
+from tests.support.given import notes_with
 from tests.support.lesson_texts import LESSON, write_lesson
 
 ALERT = "alert(1)"
@@ -131,7 +132,7 @@ def shown(text: str, home: Path = Path("/nowhere")) -> list[str]:
         pieces += [read.html]
     option = Option(pieces[0], "no", key="a")
     step = Step("predict", "x", 1, (Choice(pieces[0], (option, option)), Text(read.html)))
-    notes = Notes(answers={"0": Answer(option=0)})
+    notes = notes_with(answers={"0": Answer(option=0)})
     pieces += [filled(read.html, [step], 0, notes, ENGLISH), marked(read.html, [step], 0)]
     return [*pieces, folded(text, read.html)]
 

@@ -10,17 +10,8 @@ from onpath.app.lab.setups.setup import DRAWN, Path, RobotSetup, Setup
 from onpath.app.lab.setups.stored import to_data
 from onpath.app.lab.sketches import MOST_POINTS as SKETCHED
 from onpath.lessons.course import Course
-from onpath.lessons.kept.option_keys import second_key
-from onpath.lessons.progress import (
-    MOST_POINTS,
-    MOST_TEXT,
-    SURENESS,
-    Answer,
-    Given,
-    Notes,
-    Progress,
-    Truth,
-)
+from onpath.lessons.given import MOST_POINTS, MOST_TEXT, SURENESS, Answer, Given
+from onpath.lessons.progress import Notes, Progress, Truth
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import (
     Derivation,
@@ -41,6 +32,8 @@ from onpath.models.systems.catalogue import ROBOTS
 
 WORDS = "x" * MOST_TEXT
 NUMBER = -12345.678
+MARK = "x" * 40
+MARKS = {"mark": MARK, "why_mark": MARK}
 LONG_NUMBER = -1.2345678901234567e-100
 
 
@@ -64,46 +57,40 @@ def fullest_state(course: Course) -> dict[str, Any]:
 def _notes(lesson: Lesson) -> Notes:
     steps = list(enumerate(lesson.steps))
     asked = {str(i): step.predictions()[0] for i, step in steps if step.predictions()}
-    answers = {key: _answer(prediction) for key, prediction in asked.items()}
-    marks = [*lesson.keys, *map(second_key, lesson.keys)]
     hints = {task.id: len(task.hints) for step in lesson.steps for task in step.tasks()}
+    texts = _blocks(lesson, OpenQuestion, Derivation)
+    option = Answer(option=10)
+    given = [_given(key, answer=Answer()) for key in asked]
+    given += [_given(key, answer=_answer(each), **MARKS) for key, each in asked.items()] * 2
+    given *= 2  # it is asked again
+    given += [_given(key, answer=option, mark=MARK) for key in _blocks(lesson, Quiz)] * 3
+    given += [_given(key, number=LONG_NUMBER) for key in _blocks(lesson, NumberQuestion)] * 3
+    given += [_given(key, number=LONG_NUMBER, hints=10, way=10) for key in hints] * 3
+    given += [_given(key, text=WORDS) for key in texts] * 3
     return Notes(
         step=len(steps),
         seen=len(steps),
-        answers=answers,
         truths=dict.fromkeys(asked, _truth()),
         played=tuple(str(i) for i, _ in steps),
-        tasks=dict.fromkeys(hints, NUMBER),
         hints=hints,
-        quiz=dict.fromkeys(_blocks(lesson, Quiz), 10),
-        numbers=dict.fromkeys(_blocks(lesson, NumberQuestion), LONG_NUMBER),
-        written=dict.fromkeys(_blocks(lesson, OpenQuestion, Derivation), WORDS),
-        twice=(*_blocks(lesson, Quiz), *_blocks(lesson, NumberQuestion)),
         asked_again=tuple(asked),
-        second=answers,
-        marks=dict.fromkeys(marks, "x" * 40),
-        unknown=tuple(marks),
         handed_in=True,
-        given=tuple(_given(key, answer) for key, answer in answers.items() for _ in range(3))
-        + tuple(_given(key) for kind in (Quiz, NumberQuestion) for key in _blocks(lesson, kind))
-        + tuple(
-            Given(key, text=WORDS)
-            for key in _blocks(lesson, OpenQuestion, Derivation)
-            for _ in range(2)
-        ),
+        given=tuple(given),
     )
 
 
-def _given(key: str, answer: Answer | None = None) -> Given:
+def _given(key: str, **said: Any) -> Given:
     return Given(
         item=key,
+        attempt=10_000,
         time=LONG_NUMBER,
         round=1000,
-        answer=answer,
-        number=LONG_NUMBER,
-        mark="x" * 40,
-        why_mark="x" * 40,
+        right=False,
+        lost=True,
         key="x" * 40,
+        lesson="x" * 12,
+        product="x" * 20,
+        **said,
     )
 
 

@@ -17,7 +17,6 @@ from onpath.app.classroom.results import (
     asked_at,
     distribution,
     is_asked_again,
-    is_right,
     is_same,
     truth_of,
     votes_at,
@@ -29,10 +28,11 @@ from onpath.app.classroom.teaching.teacher_context import TeacherChoices
 from onpath.app.lab.dry_runs.step_truth import computed_truth
 from onpath.lessons.concept_test.concept_test import TESTS
 from onpath.lessons.course import Course
+from onpath.lessons.given import Given
 from onpath.lessons.kept.known_choices import of_today
-from onpath.lessons.progress import Given, Notes, Progress, Truth
+from onpath.lessons.progress import Notes, Progress, Truth
 from onpath.lessons.schema import Lesson, NumberQuestion, Prediction, Quiz, Sketch
-from onpath.lessons.votes import Vote, counted, is_skipped, vote_on
+from onpath.lessons.votes import Vote, counted, vote_on
 from onpath.lessons.words import Words
 
 FEW, MANY = 0.3, 0.7
@@ -146,12 +146,12 @@ class ClassAnswers:
         asked, states = self._first_question(), list[str]()
         for first, second in self._answers_here(asked):
             last = second or first
-            if asked is None or last is None or is_skipped(last):
+            if asked is None or last is None or last.is_skipped:
                 states.append("class.dots_here")
             elif second is not None and first is not None and not is_same(first, second):
                 states.append("class.dots_changed")
             else:
-                right = is_right(asked.block, last)
+                right = bool(last.right)
                 states.append("class.dots_right" if right else "class.dots_answered")
         return page.dots_view(states, self._words)
 
@@ -164,10 +164,10 @@ class ClassAnswers:
         if not votes or any(each.is_open(classroom.now()) for each in votes):
             return ""
         last = [second or first for first, second in self._answers_here(asked)]
-        given = [each for each in last if each is not None and not is_skipped(each)]
+        given = [each for each in last if each is not None and not each.is_skipped]
         if not given:
             return ""
-        share = sum(is_right(asked.block, each) for each in given) / len(given)
+        share = sum(each.right is True for each in given) / len(given)
         explain, discuss, go_on = PROPOSALS
         key = explain if share < FEW else discuss if share <= MANY else go_on
         return self._words(key, percent=round(100 * share))

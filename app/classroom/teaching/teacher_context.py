@@ -7,8 +7,9 @@ from dataclasses import dataclass, field
 
 from onpath.app.classroom.classroom import Classroom
 from onpath.app.lab.commands import TakeStep
+from onpath.lessons.given import Answer
 from onpath.lessons.pace import Pace
-from onpath.lessons.progress import Answer, Progress
+from onpath.lessons.progress import Progress
 from onpath.lessons.words import Words
 
 

@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass
 from functools import partial
 from typing import Any, Literal
 
+from onpath.app.common.product import product_version
 from onpath.app.common.templates import environment, json_block
 from onpath.app.exports.site.step_data import SiteStep
 from onpath.app.exports.site.task_data import check_words
@@ -127,6 +128,8 @@ def lesson_page(
     data = {
         "words": _messages(words) | check_words(words),
         "lesson": lesson.name,
+        "version": lesson.version,
+        "product": product_version(),
         "symbols": {name: words(f"symbol.{name}") for name in lesson.front.symbols},
         "scorm": scorm and asdict(scorm),
         "figures": figures,

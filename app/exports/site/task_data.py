@@ -80,6 +80,7 @@ def task_data(
         for some in (task.check, [way.when for way in task.way])
     )
     data = {"id": task.id, "best": task.best, "checks": checks, "ways": ways}
+    data["hints"] = len(task.hints)
     return data | ({"exploratory": True} if task.exploratory else {})
 
 

@@ -12,8 +12,8 @@ from onpath.app.lab.commands.lessons import PlayStep
 from onpath.app.lab.commands.path import finish
 from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.setups.setup import Setup
+from onpath.lessons.given import Answer
 from onpath.lessons.pace import Pace
-from onpath.lessons.progress import Answer
 from onpath.lessons.votes import Vote
 
 

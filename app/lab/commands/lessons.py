@@ -13,7 +13,7 @@ from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.lesson_state import Sent
 from onpath.assets.messages import languages
 from onpath.lessons.action_schema import Action
-from onpath.lessons.progress import Answer, Sure
+from onpath.lessons.given import Answer, Sure
 from onpath.models.errors import CodedError
 from onpath.models.systems.parameter_specs import unknown_name
 

@@ -1,10 +1,11 @@
 // The data that Python puts into the pages: see app/exports/site.
 
 import type { FigureData, Setting } from "./figure_data"
+import type { Answer } from "./given_data"
 
 export type Robot = "tracker" | "follower"
 export const ROBOTS: Robot[] = ["tracker", "follower"]
-export type { Setting }
+export type { Answer, Setting }
 
 /** One action of a script or a link of a page without a server; it has one of these fields besides `side`. */
 export interface Action {
@@ -130,6 +131,8 @@ export interface TaskData {
     id: string
     best: string
     checks?: Check[]
+    /** Number of its hints, the last of which is the recipe. */
+    hints?: number
     /** Conditions of the ways in which it may be passed; see lessons/task_schema.py. */
     ways?: Check[]
     /** Whether it counts nothing in a grade. */
@@ -202,6 +205,9 @@ export interface StepData {
 export interface PageData {
     words: Record<string, string>
     lesson: string
+    /** Of the lesson, and of OnPath; a lab knows them itself. */
+    version?: string
+    product?: string
     /** What each symbol of the lesson means. */
     symbols: Record<string, string>
     /** Whether this is the concept test, which tells nothing. */
@@ -210,15 +216,6 @@ export interface PageData {
     figures: SiteFigure[]
     steps: StepData[]
     lessons: Record<string, { number: string; steps: number; required: number; tasks: string[] }>
-}
-
-export interface Answer {
-    option?: number
-    times?: number[]
-    values?: number[]
-    sure?: string
-    reason?: number
-    why?: string
 }
 
 export interface Curves {

@@ -1,5 +1,7 @@
 // Packs notes into a text that fits a learning platform: 4,096 characters in SCORM 1.2. Pure functions.
 
+import type { Given } from "./given_data"
+
 /** What packing may leave out: points of a drawn curve, which keeps its ends and extremes; and the ends of long texts, which
  * the page must say. */
 interface Size {
@@ -13,6 +15,8 @@ export interface Packed {
     cut: boolean
 }
 
+/** Answers, as item, attempt, time, place of the versions among all, and the rest. */
+type Row = [item: string, attempt: number, time: number, version: number, rest: object]
 type Curve = [begin: number, end: number, low: number, high: number, letters: string]
 const LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_"
 const FINE = LETTERS.length ** 2 - 1 // parts of the length and of the height of a curve, of two letters
@@ -33,9 +37,10 @@ export function packed(kept: unknown, room: number): Packed | null {
 /** The packed notes; undefined if the text is not one of ours. */
 export function unpacked(text: string): unknown {
     try {
-        return JSON.parse(text, (_, own: { curve?: unknown } | null): unknown => {
-            const { curve, ...rest } = { ...own }
-            return isCurve(curve) ? { ...rest, ...drawn(curve) } : own
+        return JSON.parse(text, (_, own: { curve?: unknown; versions?: unknown; rows?: unknown } | null): unknown => {
+            const { curve, versions, rows, ...rest } = { ...own }
+            if (isCurve(curve)) return { ...rest, ...drawn(curve) }
+            return isRows(rows) && Array.isArray(versions) ? givenOf(rows, versions as unknown[][]) : own
         })
     } catch {
         return undefined
@@ -44,9 +49,24 @@ export function unpacked(text: string): unknown {
 
 function reduced(own: unknown, size: Size): unknown {
     if (typeof own === "string") return shortened(own, size.letters)
+    if (Array.isArray(own) && own.every(isGiven)) return own.length ? rowsOf(own) : own
     const { times, values, ...rest } = { ...(own as { times?: unknown; values?: unknown } | null) }
     if (!isLine(times) || !isLine(values) || times.length !== values.length || times.length < 2) return own
     return { ...rest, curve: curveOf(times, values, size.points) }
+}
+
+function rowsOf(given: Given[]): { versions: unknown[][]; rows: Row[] } {
+    const versions = [...new Set(given.map(({ lesson, product }) => JSON.stringify([lesson ?? null, product ?? null])))]
+    const rows = given.map(({ item, attempt = 1, time = 0, lesson, product, ...rest }): Row =>
+        [item, attempt, time, versions.indexOf(JSON.stringify([lesson ?? null, product ?? null])), rest])
+    return { versions: versions.map(each => JSON.parse(each) as unknown[]), rows }
+}
+
+function givenOf(rows: Row[], versions: unknown[][]): object[] {
+    return rows.map(([item, attempt, time, version, rest]) => {
+        const [lesson, product] = versions[version] ?? []
+        return { item, attempt, time, ...rest, ...(lesson === null ? {} : { lesson }), ...(product === null ? {} : { product }) }
+    })
 }
 
 function shortened(text: string, letters: number): string {
@@ -104,6 +124,14 @@ function fewest(times: number[], values: number[], most: number): number[] {
 
 function isLine(own: unknown): own is number[] {
     return Array.isArray(own) && own.every(Number.isFinite)
+}
+
+function isGiven(own: unknown): own is Given {
+    return typeof own === "object" && own !== null && "item" in own && typeof own.item === "string"
+}
+
+function isRows(own: unknown): own is Row[] {
+    return Array.isArray(own) && own.every(row => Array.isArray(row) && row.length === 5 && typeof row[0] === "string" && typeof row[3] === "number")
 }
 
 function isCurve(own: unknown): own is Curve {

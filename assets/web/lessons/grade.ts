@@ -1,39 +1,64 @@
 // The progress and score that a learning platform receives for a lesson. Pure functions.
 
-import type { Grade } from "./progress"
-import type { StepData } from "../core/lesson_data"
+import type { Given } from "../core/given_data"
+import type { BlockData, StepData } from "../core/lesson_data"
 import { statesOf } from "./derivation"
-import { given, type Notes } from "./notes"
+import { given, givenTo, predicted, lastSaid, type Notes } from "./notes"
 import { accepted } from "./own"
+import type { Grade } from "./progress"
+
+const SECOND = 0.5 // what a right second answer counts
+
+/** What a prediction, by its step, or a question, by step and block, asks. */
+export function blockOf(steps: StepData[], item: string): BlockData | undefined {
+    const [step, place] = item.split("."), blocks = steps[Number(step)]?.blocks ?? []
+    return place === undefined ? blocks.find(({ kind }) => kind === "choice" || kind === "sketch") : blocks[Number(place)]
+}
+
+/** As `is_right` in lessons/right.py. */
+export function isRight(block: BlockData, { answer, number, text }: Given): boolean | null {
+    if (block.kind === "number") return typeof number === "number" && accepted(number, block)
+    if (block.kind === "derivation") return statesOf(block, text ?? "").every(line => points(line.tries.map(each => each.verdict !== "wrong")) === 1)
+    if ((block.kind !== "choice" && block.kind !== "quiz") || typeof answer?.option !== "number") return null
+    return answer.option === block.right
+}
 
 export function gradeOf(steps: StepData[], notes: Notes): Grade {
     const parts: boolean[] = []
-    const right: boolean[] = []
+    const scores: number[] = []
     let begun = false
+    const judged = (done: boolean, score: number) => {
+        parts.push(done)
+        scores.push(score)
+        begun ||= done
+    }
     steps.forEach((step, i) => {
         if (step.optional) return
         parts.push(i < notes.seen)
         if (step.script) parts.push(notes.played[String(i)] === true)
         step.blocks.forEach((block, j) => {
             if ("uncounted" in block && block.uncounted) return
-            const key = `${i}.${j}`
-            const first = notes.first[key] ?? notes.quiz[key] ?? notes.numbers[key]
-            const judged = (done: boolean, good: boolean) => {
-                parts.push(done)
-                right.push(good)
-                begun ||= done
-            }
-            if (block.kind === "choice" || block.kind === "sketch") parts.push(given(notes.answers[String(i)]))
-            else if (block.kind === "open") parts.push(key in notes.written)
-            else if (block.kind === "quiz") judged(first !== undefined, first === block.right)
-            else if (block.kind === "number") judged(first !== undefined, first !== undefined && accepted(first, block))
-            else if (block.kind === "derivation") for (const line of statesOf(block, notes.written[key] ?? "")) judged(line.closed, line.tries[0] !== undefined && line.tries[0].verdict !== "wrong")
-            else if (block.kind === "task" && block.checks && !block.exploratory) judged(block.id in notes.tasks, block.id in notes.tasks)
+            const item = block.kind === "task" ? block.id : `${i}.${j}`, events = givenTo(notes, item)
+            if (block.kind === "choice" || block.kind === "sketch") parts.push(given(predicted(notes, i)))
+            else if (block.kind === "open") parts.push(events.length > 0)
+            else if (block.kind === "quiz" || block.kind === "number") judged(events.length > 0, points(events.map(each => each.right ?? isRight(block, each) ?? false)))
+            else if (block.kind === "derivation") for (const line of statesOf(block, String(lastSaid(notes, item) ?? ""))) judged(line.closed, points(line.tries.map(each => each.verdict !== "wrong")))
+            else if (block.kind === "task" && block.checks && !block.exploratory) judged(events.length > 0, Number(events.length > 0 && !isShown(block.hints, events[0]!)))
         })
     })
-    return { progress: share(parts) ?? 1, score: begun ? share(right) : null }
+    return { progress: share(parts) ?? 1, score: begun ? share(scores) : null }
 }
 
-function share(of: boolean[]): number | null {
-    return of.length ? of.filter(Boolean).length / of.length : null
+/** The first try counts in full, a right second one half; after it, what is right has been told. */
+function points(right: boolean[]): number {
+    return right[0] ? 1 : right[1] ? SECOND : 0
+}
+
+/** Whether a task was passed after its last hint, the recipe: it is done, but counts nothing. */
+function isShown(all: number | undefined, { hints }: Given): boolean {
+    return Boolean(all) && (hints ?? 0) >= all!
+}
+
+function share(of: (boolean | number)[]): number | null {
+    return of.length ? of.reduce<number>((sum, each) => sum + Number(each), 0) / of.length : null
 }

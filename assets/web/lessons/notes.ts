@@ -1,36 +1,71 @@
 // A student's notes on the lessons: what was predicted, seen, answered and passed.
 
 import type { Answer, Curves, PageData } from "../core/lesson_data"
+import type { Given } from "../core/given_data"
+import { notesOfToday } from "./former"
 import type { Progress } from "./progress"
 
-/** Keys are numbers of steps, from 0; for questions, step and block, such as "3.1". */
+/** Keys are numbers of steps, from 0. */
 export interface Notes {
     step: number
     seen: number
-    answers: Record<string, Answer>
     /** What happened after each prediction; this is not kept, since it can be computed again. */
     truths: Record<string, Curves>
     played: Record<string, boolean>
-    tasks: Record<string, number>
-    /** The way in which each task was passed last, if it is not the usual one, 0. */
-    ways: Record<string, number>
     /** Number of hints that were read, by task. */
     hints: Record<string, number>
-    quiz: Record<string, number>
-    /** First answers to quizzes and questions for numbers, after which the page shows the right ones. */
-    first: Record<string, number>
-    numbers: Record<string, number>
-    written: Record<string, string>
+    /** All answers, in the order in which they were given. */
+    given: Given[]
 }
 
 const FORMAT = "onpath-progress-1"
 
 export function noNotes(): Notes {
-    return { step: 0, seen: 0, answers: {}, truths: {}, played: {}, tasks: {}, ways: {}, hints: {}, quiz: {}, first: {}, numbers: {}, written: {} }
+    return { step: 0, seen: 0, truths: {}, played: {}, hints: {}, given: [] }
+}
+
+/** The answers to an item: a prediction, by step, a question, by step and block, or a task. */
+export function givenTo(notes: Notes, item: string): Given[] {
+    return notes.given.filter(each => each.item === item)
+}
+
+/** The answer to a prediction that counts: the first one that was not skipped; a skipped one is empty. */
+export function predicted(notes: Notes, step: number | string): Answer | undefined {
+    const all = givenTo(notes, String(step)).filter(each => each.way === undefined)
+    return (all.find(each => given(each.answer)) ?? all[0])?.answer ?? undefined
+}
+
+/** What was chosen or typed last, in answer to a question. */
+export function lastSaid(notes: Notes, question: string): number | string | undefined {
+    const last = givenTo(notes, question).at(-1)
+    return last?.answer?.option ?? last?.number ?? (last?.text || undefined)
+}
+
+/** The tasks that were passed: the least value, or 0 for tasks without one, and the way in which each was passed last. */
+export function passedTasks(notes: Notes): Record<string, { best: number; way: number }> {
+    const found: Record<string, { best: number; way: number }> = {}
+    for (const { item, number, way } of notes.given)
+        if (way !== undefined) found[item] = { best: Math.min(found[item]?.best ?? Infinity, number ?? 0), way: way ?? 0 }
+    return found
+}
+
+/** Keep one more answer, unless it says the same again; as `_keep` in app/lab/lesson_state.py. Returns it, or null. */
+export function noted(notes: Notes, answer: Omit<Given, "attempt">): Given | null {
+    const before = givenTo(notes, answer.item), last = before.at(-1)
+    if (last && says(last) === says(answer)) return null
+    const all = [...before, { ...answer, attempt: last ? (last.attempt ?? 1) + 1 : 1 }]
+    const made = all.findIndex(each => !each.answer || given(each.answer)), judged = typeof all[0]!.right === "boolean"
+    const kept = all.filter((_, i) => i === 0 || i === made || (judged && i === 1) || i === all.length - 1)
+    notes.given = [...notes.given.filter(each => each.item !== answer.item), ...kept]
+    return all.at(-1)!
+}
+
+function says({ answer, number, text, way }: Omit<Given, "attempt">): string {
+    return JSON.stringify([answer, number, text, way])
 }
 
 export function notesOf(progress: Progress, lesson: string): Notes {
-    const kept = parsed(progress.get(key(lesson)) ?? "{}")
+    const kept = notesOfToday(parsed(progress.get(key(lesson)) ?? "{}"))
     return isNotes(kept) ? { ...noNotes(), ...kept, truths: {} } : noNotes()
 }
 
@@ -39,8 +74,8 @@ export function keep(progress: Progress, lesson: string, notes: Notes): void {
 }
 
 /** Whether a prediction was committed; a skipped one is an empty answer. */
-export function given(answer: Answer | undefined): boolean {
-    return answer?.option !== undefined || answer?.times !== undefined
+export function given(answer: Answer | null | undefined): boolean {
+    return typeof answer?.option === "number" || answer?.times !== undefined
 }
 
 /** All notes of a course as a file. */
@@ -54,6 +89,7 @@ export function imported(progress: Progress, page: PageData, text: string): bool
     const read = parsed(text) as { format?: unknown; lessons?: unknown } | null
     if (read?.format !== FORMAT || typeof read.lessons !== "object" || !read.lessons) return false
     const lessons = Object.entries(read.lessons).filter(([name]) => name in page.lessons)
+        .map(([name, notes]) => [name, notesOfToday(notes)] as const)
     if (!lessons.every(([, notes]) => isNotes(notes))) return false
     for (const [name, notes] of lessons) progress.set(key(name), JSON.stringify(notes))
     return true
@@ -90,8 +126,10 @@ function isNotes(read: unknown): read is Partial<Notes> {
     const place = (each: unknown) => number(each) && Number.isInteger(each) && (each as number) >= 0
     const answer = fields({ option: place, reason: place, times: numbers, values: numbers, sure: text, why: text })
     const curves = fields({ times: numbers, tracker: numbers, follower: numbers })
-    return fields({
-        step: place, seen: place, answers: every(answer), truths: every(curves), played: every(flag),
-        tasks: every(number), ways: every(place), hints: every(place), quiz: every(place), first: every(number), numbers: every(number), written: every(text),
-    })(read)
+    const event = fields({
+        item: text, attempt: place, time: number, round: place, answer, number, text, right: flag, hints: place, way: place,
+        lost: flag, mark: text, why_mark: text, key: text, lesson: text, product: text,
+    })
+    const all = (each: unknown) => Array.isArray(each) && each.length <= 10000 && each.every(one => event(one) && "item" in (one as object))
+    return fields({ step: place, seen: place, truths: every(curves), played: every(flag), hints: every(place), given: all })(read)
 }

@@ -3,7 +3,7 @@
 import type { BlockData, PageData } from "../core/lesson_data"
 import { general } from "../core/numbers"
 import { localized } from "../core/words"
-import type { Notes } from "./notes"
+import { predicted, lastSaid, type Notes } from "./notes"
 
 const STATISTICS: Record<string, (values: number[]) => number> = {
     max: values => Math.max(...values), min: values => Math.min(...values), final: values => values[values.length - 1]!,
@@ -28,7 +28,7 @@ export function showOwn(page: PageData, notes: Notes): void {
         element.hidden = !block.when[1].includes(answer(page, notes, block.when[0]) as number)
     }))
     for (const element of document.querySelectorAll<HTMLElement>("[data-own]")) {
-        const values = notes.answers[element.dataset["step"]!]?.values
+        const values = predicted(notes, element.dataset["step"]!)?.values
         if (!values) continue
         const value = general(STATISTICS[element.dataset["own"]!]!(values), 3)
         element.textContent = localized(value.replace("-", "−"), page)
@@ -38,8 +38,10 @@ export function showOwn(page: PageData, notes: Notes): void {
 /** As `answers_meant` in lessons/adaptive/branches.py numbers answers; undefined before there is one. */
 function answer(page: PageData, notes: Notes, key: string): number | undefined {
     const [step, place] = key.split(".").map(Number)
-    if (place === undefined) return notes.answers[key] && (notes.answers[key].option ?? -1)
-    const block = page.steps[step!]!.blocks[place]!
-    if (block.kind !== "number") return notes.quiz[key]
-    return notes.numbers[key] === undefined ? undefined : Number(accepted(notes.numbers[key], block))
+    if (place === undefined) {
+        const own = predicted(notes, key)
+        return own && (own.option ?? -1)
+    }
+    const block = page.steps[step!]!.blocks[place]!, own = lastSaid(notes, key) as number | undefined
+    return own === undefined || block.kind !== "number" ? own : Number(accepted(own, block))
 }

@@ -1,5 +1,8 @@
 // Keeps a student's progress in the browser; for a learning platform see scorm.ts.
 
+import type { Given } from "../core/given_data"
+import type { BlockData } from "../core/lesson_data"
+
 /** Shows a message about what is kept, in the page's texts. */
 export type Tell = (key: string, values?: Record<string, string>) => void
 
@@ -8,8 +11,8 @@ export interface Grade {
     /** The share of parts that are done: steps opened, runs seen to their end, predictions
      * committed, questions answered, tasks passed. */
     progress: number
-    /** The share of quizzes, numbers and tasks that are right; null before one of them was answered or passed. The first
-     * answer counts, since the page then shows the right one; a task may be tried until it is passed. */
+    /** The share of quizzes, numbers and tasks that are right; null before one of them was answered or passed. A right second
+     * answer counts half; a task may be tried until it is passed, and counts nothing after its last hint, the recipe. */
     score: number | null
 }
 
@@ -18,6 +21,8 @@ export interface Progress {
     get(key: string): string | null
     set(key: string, value: string): void
     grade(grade: Grade): void
+    /** An answer was given to a part of a lesson; of a task the part is not known. */
+    tell(lesson: string, given: Given, block?: BlockData): void
 }
 
 const PREFIX = "onpath."
@@ -27,7 +32,7 @@ export class LocalProgress implements Progress {
     private readonly memory = new Map<string, string>()
     lost = false // whether nothing could be kept
 
-    constructor(private readonly tell: Tell) {}
+    constructor(private readonly say: Tell) {}
 
     get(key: string): string | null {
         try {
@@ -44,9 +49,10 @@ export class LocalProgress implements Progress {
         } catch {
             this.lost = true
             this.memory.set(key, value)
-            this.tell("site.not_kept")
+            this.say("site.not_kept")
         }
     }
 
     grade(): void {}
+    tell(): void {}
 }

@@ -1,6 +1,7 @@
 // Keeps progress in a learning platform, through the run-time of SCORM 1.2 or SCORM 2004.
 
-import type { Package } from "../core/lesson_data"
+import type { Given } from "../core/given_data"
+import type { BlockData, Package } from "../core/lesson_data"
 import { packed, unpacked } from "../core/packed"
 import { parsed } from "./notes"
 import type { Grade, Progress, Tell } from "./progress"
@@ -11,10 +12,12 @@ const NAMES = {
     "1.2": {
         api: "API", verb: "LMS", end: "Finish", core: "cmi.core.", mode: "cmi.core.lesson_mode", room: 4096,
         status: "cmi.core.lesson_status", scaled: "", progress: "",
+        time: "time", response: "student_response", wrong: "wrong", longest: 255, text: "fill-in", task: "performance",
     },
     "2004": {
         api: "API_1484_11", verb: "", end: "Terminate", core: "cmi.", mode: "cmi.mode", room: 64000,
         status: "cmi.completion_status", scaled: "cmi.score.scaled", progress: "cmi.progress_measure",
+        time: "timestamp", response: "learner_response", wrong: "incorrect", longest: 4000, text: "long-fill-in", task: "other",
     },
 }
 export class ScormProgress implements Progress {
@@ -27,7 +30,7 @@ export class ScormProgress implements Progress {
         private readonly names: (typeof NAMES)[Package["version"]],
         private readonly api: Api,
         private readonly scoresParts: boolean,
-        private readonly tell: Tell,
+        private readonly say: Tell,
     ) {
         this.begin()
         this.kept = { ...(unpacked(this.value(DATA)) as object | undefined) }
@@ -75,12 +78,30 @@ export class ScormProgress implements Progress {
         this.checked("Commit", "")
     }
 
+    /** The platform gets each answer when it is given, as an interaction; it need not take any. */
+    tell(lesson: string, given: Given, block?: BlockData): void {
+        const { names } = this, count = this.value("cmi.interactions._count")
+        if (!this.credit || !/^\d+$/.test(count)) return
+        const { item, attempt = 1, time = 0, answer, number, text, right, hints, lesson: version, product } = given
+        const drawn = answer?.times?.map((at, i) => `${Number(at.toFixed(2))} ${Number(answer.values![i]!.toFixed(2))}`).join(", ")
+        const { option } = answer ?? {}, counts = block?.kind !== "choice" && !(block && "uncounted" in block && block.uncounted)
+        const response = typeof option === "number" ? String(option) : drawn ?? text ?? (typeof number === "number" ? String(number) : "")
+        const at = new Date(1000 * time), type = typeof option === "number" ? "choice" : !block ? names.task : block.kind === "number" ? "numeric" : names.text
+        const put = (name: string, value: string) => this.ask("SetValue", `cmi.interactions.${count}.${name}`, value)
+        put("id", `${lesson}.${item}.${attempt}`)
+        put("type", type)
+        put(names.time, names.scaled ? `${at.toISOString().slice(0, 19)}Z` : at.toTimeString().slice(0, 8))
+        if (response) put(names.response, Array.from(response).slice(0, names.longest).join(""))
+        put("result", !counts || typeof right !== "boolean" ? "neutral" : right ? "correct" : names.wrong)
+        if (names.scaled) put("description", JSON.stringify({ hints: hints ?? 0, sure: answer?.sure ?? "", lesson: version, product }))
+    }
+
     private begin(): void {
         this.open = true
         this.open = this.checked("Initialize", "")
         this.records = this.open && !["review", "browse"].includes(this.value(this.names.mode))
         this.credit = this.records && this.value(`${this.names.core}credit`) !== "no-credit"
-        if (this.open && !this.records) this.tell("site.review")
+        if (this.open && !this.records) this.say("site.review")
         if (this.records) this.put(`${this.names.core}exit`, "suspend") // a lesson may be left and resumed
         if (this.credit) this.status("incomplete", ["passed", "completed", "failed"])
     }
@@ -93,8 +114,8 @@ export class ScormProgress implements Progress {
     private keep(): void {
         if (!this.records) return
         const found = packed(this.kept, this.names.room)
-        if (!found) return this.tell("site.no_room")
-        if (found.cut) this.tell("site.cut", { most: String(this.names.room) })
+        if (!found) return this.say("site.no_room")
+        if (found.cut) this.say("site.cut", { most: String(this.names.room) })
         this.put(DATA, found.text)
     }
 
@@ -110,7 +131,7 @@ export class ScormProgress implements Progress {
         if (!this.open) return false
         if (this.ask(verb, ...values) !== "false") return true
         const code = this.ask("GetLastError")
-        this.tell("site.refused", { reason: `${this.ask("GetErrorString", code)} (${code})` })
+        this.say("site.refused", { reason: `${this.ask("GetErrorString", code)} (${code})` })
         return false
     }
 

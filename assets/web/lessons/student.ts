@@ -1,10 +1,11 @@
 // What a student has done in a lesson, and whether it is right.
 
 import type { PageData, TaskData, Answer, Curves } from "../core/lesson_data"
+import type { Given } from "../core/given_data"
 import { judge, statistic, wayOf, type Verdict } from "./checks"
 import { EarlierRun } from "./earlier"
-import { gradeOf } from "./grade"
-import { keep, notesOf, type Notes } from "./notes"
+import { blockOf, gradeOf, isRight } from "./grade"
+import { keep, noted, notesOf, passedTasks, lastSaid, type Notes } from "./notes"
 import type { Progress } from "./progress"
 import type { Recorded } from "./recorded"
 
@@ -72,29 +73,23 @@ export class LocalStudent implements Student {
     }
 
     predicts(step: number, answer: Answer): void {
-        this.notes.answers[String(step)] = answer
-        this.save()
+        this.give(String(step), { answer })
     }
 
     chooses(question: string, option: number): void {
-        this.notes.quiz[question] = option
-        this.notes.first[question] ??= option
-        this.save()
+        this.give(question, { answer: { option } })
     }
 
     gives(question: string, number: number): void {
-        this.notes.numbers[question] = number
-        this.notes.first[question] ??= number
-        this.save()
+        this.give(question, { number })
     }
 
     writes(question: string, text: string): void {
-        this.notes.written[question] = text
-        this.save()
+        this.give(question, { text })
     }
 
     derives(question: string, row: string): void {
-        const before = this.notes.written[question]
+        const before = lastSaid(this.notes, question)
         this.writes(question, before ? `${before}\n${row}` : row)
     }
 
@@ -126,6 +121,19 @@ export class LocalStudent implements Student {
         return { verdicts, run: record.run }
     }
 
+    /** One more answer; see `noted`. */
+    private give(item: string, event: Partial<Given>): void {
+        const { page, notes, progress } = this, block = blockOf(page.steps, item)
+        const right = event.way === undefined ? block && isRight(block, { item, ...event }) : true
+        const { version = "", product = "" } = page
+        const given = noted(notes, {
+            item, time: Math.round(Date.now()) / 1000, ...event, ...(right === null ? {} : { right }),
+            ...(notes.hints[item] ? { hints: notes.hints[item] } : {}), lesson: version, product,
+        })
+        if (given) progress.tell(page.lesson, given, block)
+        this.save()
+    }
+
     save(): void {
         const { page, notes, progress } = this
         keep(progress, page.lesson, notes)
@@ -135,12 +143,8 @@ export class LocalStudent implements Student {
 
     /** A task is passed in a way, with a value of which the least is kept. */
     private pass(task: string, value: number, way: number): void {
-        const { tasks, ways } = this.notes
-        const worse = tasks[task] !== undefined && value >= tasks[task]
-        if (worse && way === (ways[task] ?? 0)) return
-        if (!worse) tasks[task] = Math.round(1e3 * value) / 1e3
-        if (way) ways[task] = way
-        else delete ways[task]
-        this.save()
+        const before = passedTasks(this.notes)[task], best = before?.best ?? Infinity
+        if (before && value >= best && way === before.way) return
+        this.give(task, { number: Math.min(best, Math.round(1e3 * value) / 1e3), way })
     }
 }

@@ -4,7 +4,7 @@ import { made } from "../core/dom"
 import type { Action, PageData, Setting, StepData } from "../core/lesson_data"
 import { refused } from "../core/refusal"
 import { phrase } from "../core/words"
-import { given } from "../lessons/notes"
+import { given, passedTasks, predicted } from "../lessons/notes"
 import { showOwn } from "../lessons/own"
 import type { Progress } from "../lessons/progress"
 import { Recorded } from "../lessons/recorded"
@@ -285,14 +285,14 @@ export class Player implements Robots {
         const { page, notes } = this
         const words = this.section.querySelector(".words")!
         words.querySelectorAll(".compared").forEach(each => each.remove())
-        const tasks = String(Object.keys(notes.tasks).length)
+        const tasks = String(Object.keys(passedTasks(notes)).length)
         const counts = { done: String(notes.seen), all: String(page.steps.length), tasks }
         document.querySelector("#counts")!.textContent = phrase(page, "site.done", counts)
         page.steps.forEach((_, i) => {
             const found = this.views[i]!.prediction
             if (found?.step !== i) return
             const question = elementOf(found).querySelector(".question")!.textContent
-            const answer = notes.answers[String(i)]
+            const answer = predicted(notes, i)
             const truth = notes.truths[String(i)]
             const comparison = new Comparison(page, found, notes)
             const run = page.steps[i]!.kind === "run" ? i : i + 1

@@ -9,6 +9,7 @@ import { judge, wayOf } from "../lessons/checks"
 import { gradeOf } from "../lessons/grade"
 import { LocalProgress, type Tell } from "../lessons/progress"
 import { ScormProgress } from "../lessons/scorm"
+import { LocalStudent } from "../lessons/student"
 import { Player } from "./player"
 import { StartPage } from "./start"
 
@@ -22,7 +23,7 @@ function showPage(page: PageData): void {
     const local = new LocalProgress(tell)
     const progress = (page.scorm && ScormProgress.found(page.scorm, tell)) || local
     const site = page.lesson ? new Player(page, progress) : new StartPage(page, local)
-    Object.assign(window, { site, judge, wayOf, gradeOf, packed, unpacked, shapesOf }) // for tests
+    Object.assign(window, { LocalStudent, ScormProgress, site, judge, wayOf, gradeOf, packed, unpacked, shapesOf }) // for tests
 }
 
 showPage(JSON.parse(document.getElementById("data")!.textContent) as PageData)

@@ -6,7 +6,7 @@ import { nextLesson } from "../core/next_lesson"
 import { refused } from "../core/refusal"
 import { phrase } from "../core/words"
 import { Simulation } from "../simulation/simulation"
-import { exported, forget, imported, notesOf } from "../lessons/notes"
+import { exported, forget, imported, notesOf, passedTasks } from "../lessons/notes"
 import type { LocalProgress } from "../lessons/progress"
 import { Figure } from "./figure"
 import { kernelsOf } from "./stage"
@@ -44,15 +44,15 @@ export class StartPage {
     private readonly button = (name: string, act: () => void) => document.getElementById(name)!.addEventListener("click", act)
     private show(): void {
         const lessons = Object.entries(this.page.lessons).map(([name, { number, steps, required, tasks }]) => {
-            const notes = notesOf(this.progress, name), passed = Object.keys(notes.tasks).length
-            const done = Math.min(notes.seen, required) + tasks.filter(id => id in notes.tasks).length
-            const all = required + tasks.length
-            return { name, number, seen: notes.seen, steps, passed, done: done / all, finished: done === all }
+            const notes = notesOf(this.progress, name), best = passedTasks(notes)
+            const done = Math.min(notes.seen, required) + tasks.filter(id => id in best).length
+            const all = required + tasks.length, count = Object.keys(best).length
+            return { name, number, seen: notes.seen, steps, count, done: done / all, finished: done === all }
         })
         const next = nextLesson(lessons)
         for (const lesson of lessons) {
-            const { name, seen, steps, passed, done, finished } = lesson
-            const counts = phrase(this.page, "site.done", { done: String(seen), all: String(steps), tasks: String(passed) })
+            const { name, seen, steps, count, done, finished } = lesson
+            const counts = phrase(this.page, "site.done", { done: String(seen), all: String(steps), tasks: String(count) })
             const told = (kind: string) => document.querySelector<HTMLElement>(`[data-${kind}="${name}"]`)!
             told("lesson").textContent = seen ? `· ${finished ? "✓ " : ""}${counts}` : ""
             const bar = told("done") as HTMLProgressElement

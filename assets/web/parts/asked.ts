@@ -4,6 +4,7 @@ import { made } from "../core/dom"
 import { draftOf, keepDraft } from "../core/drafts"
 import type { BlockData, PageData } from "../core/lesson_data"
 import { localized, phrase } from "../core/words"
+import { givenTo, lastSaid } from "../lessons/notes"
 import { accepted, known } from "../lessons/own"
 import type { Student } from "../lessons/student"
 
@@ -43,11 +44,9 @@ export function ask(page: PageData, element: HTMLElement, block: BlockData, key:
     const button = made("button", "script-only", phrase(page, block.kind === "open" || page.test ? "answer.keep" : "answer.check"))
     button.type = "button"
     told.before(button)
+    if (block.kind !== "open" && !page.test && !("uncounted" in block && block.uncounted)) button.after(" ", made("span", "price", phrase(page, "answer.price")))
     let shown: unknown, wasSending = false // the answer that is judged
-    const kept = () => {
-        const { quiz, numbers, written } = student.notes
-        return (block.kind === "quiz" ? quiz : block.kind === "number" ? numbers : written)[key]
-    }
+    const kept = () => lastSaid(student.notes, key)
     const show = () => {
         const own = kept(), way = student.way(key), isSending = way === "sending"
         button.disabled = isSending
@@ -62,7 +61,7 @@ export function ask(page: PageData, element: HTMLElement, block: BlockData, key:
             if (way) told.textContent = phrase(page, "answer.sent")
             return
         }
-        const first = student.notes.first[key] === own // a lab keeps what is right to itself until the second answer
+        const first = (givenTo(student.notes, key).at(-1)?.attempt ?? 1) === 1
         if (block.kind === "quiz") {
             if (block.right === undefined || (first && own !== block.right)) return told.replaceChildren(...repliedTo(page, element.querySelector(`[data-answer="${own}"]`)))
             return told.replaceChildren(...judged(page, element, block.right, own as number).childNodes)

@@ -5,6 +5,7 @@ import { draftOf, keepDraft } from "../core/drafts"
 import type { DerivationData, LineState, PageData } from "../core/lesson_data"
 import { phrase } from "../core/words"
 import { statesOf } from "../lessons/derivation"
+import { lastSaid } from "../lessons/notes"
 import type { Student } from "../lessons/student"
 import { readFormula, Refused } from "../lessons/typed"
 
@@ -13,7 +14,7 @@ export function derive(page: PageData, element: HTMLElement, data: DerivationDat
     const [step, place] = key.split(".").map(Number)
     const states = (): LineState[] => { // a lab tells them anew after each answer
         const block = page.steps[step!]!.blocks[place!]!
-        return statesOf(block.kind === "derivation" ? block : data, student.notes.written[key] ?? "")
+        return statesOf(block.kind === "derivation" ? block : data, String(lastSaid(student.notes, key) ?? ""))
     }
     const lines = [...element.querySelectorAll<HTMLElement>("[data-line]")]
     const after = element.querySelector<HTMLDetailsElement>(":scope > .after")

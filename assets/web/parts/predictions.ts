@@ -4,7 +4,7 @@ import { made, tell } from "../core/dom"
 import { draftOf, keepDraft } from "../core/drafts"
 import type { BlockData, PageData, Script, SketchData, StepData, Answer, Curves } from "../core/lesson_data"
 import { phrase, significant, type Texts } from "../core/words"
-import { given, type Notes } from "../lessons/notes"
+import { given, predicted, type Notes } from "../lessons/notes"
 import type { Student } from "../lessons/student"
 import { judged } from "./asked"
 import { Chart, type Axes } from "./chart"
@@ -49,7 +49,7 @@ export interface PredictionForm {
 /** Make a prediction answerable. Once committed, it cannot be changed; a skipped one can still be made. */
 export function predict(page: PageData, prediction: Prediction, student: Student): PredictionForm {
     const element = elementOf(prediction)
-    const answerKept = () => student.notes.answers[String(prediction.step)]
+    const answerKept = () => predicted(student.notes, prediction.step)
     const { data } = prediction
     const told = element.querySelector<HTMLElement>(".verdict")!
     const commit = element.querySelector<HTMLButtonElement>(".commit")!
@@ -164,7 +164,7 @@ export class Comparison {
             const chart = (this.chart = chartOf(page, prediction, data, () => chart.draw()))
             drawn(chart, data, this.answer, undefined)
             this.elements.push(chart.element, this.again)
-        } else this.elements.push(judged(page, elementOf(prediction), data.right, this.answer?.option))
+        } else this.elements.push(judged(page, elementOf(prediction), data.right, this.answer?.option ?? undefined))
     }
 
     /** The verdict on a choice, in words. */
@@ -180,7 +180,7 @@ export class Comparison {
     }
 
     private get answer(): Answer | undefined {
-        return this.notes.answers[String(this.prediction.step)]
+        return predicted(this.notes, this.prediction.step)
     }
 }
 
@@ -250,7 +250,7 @@ function isCurve({ times, values }: Answer): boolean {
 function beside(element: HTMLElement): Answer {
     const value = (name: string) => element.querySelector<HTMLSelectElement | HTMLTextAreaElement>(name)?.value ?? ""
     const found: Answer = {}
-    if (value(".sure")) found.sure = value(".sure")
+    if (value(".sure")) found.sure = value(".sure") as Answer["sure"]
     if (value(".reason")) found.reason = Number(value(".reason"))
     if (value(".why").trim()) found.why = value(".why").trim().slice(0, 1000)
     return found

@@ -4,7 +4,7 @@
 import { made } from "../core/dom"
 import type { PageData } from "../core/lesson_data"
 import { phrase } from "../core/words"
-import { given, type Notes } from "../lessons/notes"
+import { given, predicted, type Notes } from "../lessons/notes"
 import type { Student } from "../lessons/student"
 import { ask } from "./asked"
 import { derive } from "./derivation"
@@ -82,9 +82,9 @@ export class StepView {
     /** What is predicted here; what is right is known only after the run. */
     get prediction(): Prediction | null { return predictionAt(this.page.steps, this.index) }
     /** Whether a prediction is pending. */
-    get waits(): boolean { return this.prediction !== null && this.notes.answers[String(this.prediction.step)] === undefined }
+    get waits(): boolean { return this.prediction !== null && predicted(this.notes, this.prediction.step) === undefined }
     /** Whether its own prediction was committed. */
-    get committed(): boolean { return given(this.notes.answers[String(this.index)]) }
+    get committed(): boolean { return given(predicted(this.notes, this.index)) }
     /** Whether the main thing to press now is the step's own: to commit its prediction, or to let it happen. */
     get leads(): boolean {
         const { kind, script } = this.page.steps[this.index]!
@@ -180,7 +180,7 @@ export class StepView {
         const { section, beneath } = this.places
         const sketched = prediction?.data.kind === "sketch"
         const due = prediction !== null && !this.waits && (sketched || (this.happened && !robots.playing))
-        const shown = due ? JSON.stringify([notes.answers[String(prediction.step)], page.steps[prediction.step]!.blocks]) : ""
+        const shown = due ? JSON.stringify([predicted(notes, prediction.step), page.steps[prediction.step]!.blocks]) : ""
         if (shown === this.shown) return // an open table stays open
         this.shown = shown
         for (const place of [section, beneath]) place.querySelectorAll(".compared").forEach(each => each.remove())

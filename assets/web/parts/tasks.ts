@@ -5,6 +5,7 @@ import type { PageData, TaskData } from "../core/lesson_data"
 import { general } from "../core/numbers"
 import { localized, phrase } from "../core/words"
 import type { Verdict } from "../lessons/checks"
+import { passedTasks } from "../lessons/notes"
 import type { Student } from "../lessons/student"
 
 export class Task {
@@ -26,7 +27,7 @@ export class Task {
     }
 
     follow(): void {
-        const before = this.student.notes.tasks[this.data.id]
+        const before = passedTasks(this.student.notes)[this.data.id]
         const result = this.student.result(this.data)
         if (!result) return
         const passed = result.verdicts.every(verdict => verdict.passed)
@@ -37,9 +38,8 @@ export class Task {
 
     private show(verdicts: Verdict[]): void {
         const { page, element, data } = this
-        const best = this.student.notes.tasks[data.id]
+        const { best, way } = passedTasks(this.student.notes)[data.id] ?? { way: 0 }
         const passed = best === undefined ? "" : data.best ? `: ${localized(general(best, 3), page)}` : " "
-        const way = this.student.notes.ways[data.id] ?? 0
         const text = JSON.stringify([verdicts, passed, way])
         if (text === this.shown) return
         this.shown = text

@@ -9,13 +9,16 @@ from io import BytesIO
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from msgspec.structs import replace
 
 from onpath.app.classroom.class_record import ANSWERS, Sheet, class_record, workbook
 from onpath.app.classroom.classroom import Member
 from onpath.app.lab.lesson_state import LessonState, Sent
 from onpath.lessons.course import Course, read_course
-from onpath.lessons.progress import Answer, Notes, Progress
+from onpath.lessons.given import Answer, Given
+from onpath.lessons.progress import Notes, Progress
 from onpath.lessons.votes import Vote
+from tests.support.given import notes_with
 from tests.support.lesson_texts import LESSON, write_lesson
 from tests.support.record import MADE, record, sheets
 
@@ -51,13 +54,13 @@ def test_what_students_write_is_text_in_one_cell(cells: list[str]) -> None:
 
 def test_a_column_has_one_type_and_a_lesson_its_title(course: Course) -> None:
     name = next(iter(course.lessons))
-    notes = Notes(
+    task = Given("hold", number=0.0, right=True, way=0, hints=2)
+    noted = notes_with(
         answers={"1": Answer(times=(0.0, 1.0), values=(-1.0, 2.5)), "3": Answer(option=1)},
         second={"3": Answer()},
-        asked_again=("3",),
-        tasks={"hold": 0.0},
         hints={"hold": 2},
     )
+    notes = replace(noted, given=(*noted.given, task))
     members = [
         Member(1, "=1+1", Progress(notes={name: notes})),
         Member(2, "Hana (late)", Progress(notes={name: Notes(asked_again=("3",))})),
@@ -91,7 +94,7 @@ GIVEN = st.lists(
 
 
 @given(GIVEN, st.integers(0, 200))
-def test_there_is_a_row_for_the_first_and_the_last_answer_with_its_time_and_whether_it_is_late(
+def test_there_is_a_row_for_the_first_two_answers_and_the_last_one_with_time_and_lateness(
     course: Course, moves: list[tuple[str, int, int]], closes: int
 ) -> None:
     """Answers, in any order of items and options, at increasing times."""
@@ -104,12 +107,15 @@ def test_there_is_a_row_for_the_first_and_the_last_answer_with_its_time_and_whet
             run.note_answer(Answer(option=option), Sent(NAME, CHOICE))
         else:
             run.answer_quiz(0, option, Sent(NAME, QUIZ))
-        given["prediction" if kind == "choice" else "question"].append((now, option))
+        before = given["prediction" if kind == "choice" else "question"]
+        if not before or before[-1][1] != option:  # the same again is no answer
+            before.append((now, option))
     votes = [Vote(NAME, str(CHOICE), CHOICE, closes=1e9 + closes)]
     found = record([Member(1, "Ada", run.progress)], course, votes=votes)["Answers"]
     for kind, step in (("prediction", CHOICE), ("question", QUIZ)):
         rows = [row for row in found if row["step"] == step + 1 and row["kind"] == kind]
-        wanted = [*given[kind][:1], *given[kind][1:][-1:]]
+        every = list(enumerate(given[kind], 1))
+        wanted = [*every[:2], *every[2:][-1:]]
         if not moves:
             assert rows == []
         elif not wanted:
@@ -118,9 +124,11 @@ def test_there_is_a_row_for_the_first_and_the_last_answer_with_its_time_and_whet
             told = [(row["attempt"], row["given (UTC)"], row["chosen"]) for row in rows]
             assert told == [
                 (attempt, f"{datetime.fromtimestamp(time, UTC):%Y-%m-%d %H:%M:%S}", "AB"[option])
-                for attempt, (time, option) in enumerate(wanted, 1)
+                for attempt, (time, option) in wanted
             ]
-            late = [int(time > 1e9 + closes) if kind == "prediction" else "" for time, _ in wanted]
+            late = [
+                int(time > 1e9 + closes) if kind == "prediction" else "" for _, (time, _) in wanted
+            ]
             assert [row["late"] for row in rows] == late
 
 

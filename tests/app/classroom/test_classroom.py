@@ -26,10 +26,12 @@ from onpath.app.lab.setups.setup import Setup
 from onpath.app.storage.forget import forget
 from onpath.app.storage.records import Records, file_url
 from onpath.lessons.course import Course, read_course
-from onpath.lessons.progress import Answer, Notes, Progress, Truth
+from onpath.lessons.given import Answer
+from onpath.lessons.progress import Notes, Progress, Truth
 from onpath.lessons.schema import Choice, Sketch
 from onpath.lessons.words import ENGLISH
 from onpath.models.systems.catalogue import FIVE_BAR
+from tests.support.given import notes_with
 from tests.support.lab import do, loop_cache, run
 from tests.support.lesson_texts import write_lesson
 from tests.support.record import record
@@ -439,7 +441,7 @@ def test_the_table_knows_who_is_idle_and_who_is_away(klass: Watched) -> None:
 def answered(*answers: Answer | None, step: int) -> list[Progress]:
     """Students with these answers to one prediction."""
     kept = [{} if answer is None else {str(step): answer} for answer in answers]
-    return [Progress(notes={LESSON: Notes(answers=own)}) for own in kept]
+    return [Progress(notes={LESSON: notes_with(answers=own)}) for own in kept]
 
 
 def test_choices_are_counted(course: Course) -> None:

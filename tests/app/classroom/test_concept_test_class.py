@@ -16,6 +16,7 @@ from onpath.lessons.concept_test.concept_test import AFTER, BEFORE, questions
 from onpath.lessons.progress import Notes, Progress
 from onpath.lessons.words import ENGLISH
 from tests.support.built_in import built_in_course
+from tests.support.given import notes_with
 from tests.support.record import Row, record
 
 COURSE = built_in_course()[0]
@@ -30,7 +31,7 @@ def sat(right: int) -> Notes:
     for number, (key, block) in enumerate(list(ASKED.items())[:-1]):
         good = number < right
         chosen[key] = next(i for i, o in enumerate(block.options) if o.right == good)
-    return Notes(quiz=chosen, handed_in=True)
+    return notes_with(quiz=chosen, handed_in=True)
 
 
 WAYS = {

@@ -23,7 +23,8 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.lab import Lab
 from onpath.lessons.course import Course, read_course
-from onpath.lessons.progress import Answer, Progress, read_progress
+from onpath.lessons.given import Answer
+from onpath.lessons.progress import Progress, read_progress
 from onpath.lessons.words import ENGLISH
 from onpath.models.systems.catalogue import FIVE_BAR
 from tests.support.lab import do, loop_cache

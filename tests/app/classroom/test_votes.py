@@ -28,7 +28,8 @@ from onpath.app.lab.snapshots.page_snapshot import LessonSnapshot
 from onpath.app.view.lesson_message import lesson_message
 from onpath.app.view.lesson_view import LessonView
 from onpath.lessons.course import Course, read_course
-from onpath.lessons.progress import Answer, Notes, Progress
+from onpath.lessons.given import Answer
+from onpath.lessons.progress import Notes, Progress
 from onpath.lessons.schema import Choice, NumberQuestion, Quiz
 from onpath.lessons.votes import Vote, vote_on
 from onpath.lessons.words import ENGLISH

@@ -28,7 +28,8 @@ from onpath.app.view.lesson_message import lesson_message
 from onpath.app.view.lesson_view import LessonView
 from onpath.assets import asset_path
 from onpath.lessons.course import Course
-from onpath.lessons.progress import Answer, Notes, Progress
+from onpath.lessons.given import Answer
+from onpath.lessons.progress import Notes, Progress
 from onpath.lessons.schema import (
     Choice,
     Derivation,
@@ -43,6 +44,7 @@ from onpath.lessons.words import ENGLISH, Words, languages
 from onpath.models.systems.catalogue import FIVE_BAR
 from tests.support.built_in import built_in_course
 from tests.support.checkout import ROOT
+from tests.support.given import notes_with
 
 TAG = re.compile(r"</?(?!br\b)[a-zA-Z][a-zA-Z0-9]*(\s[a-z-]+=|\s*/?>)")  # markdown may have <br/>
 BYTES_ALONE = "app/viser_adapter/page_scripts.py"  # puts our files into viser's page, no values
@@ -195,7 +197,7 @@ def pieces(run: LessonRun, words: Words) -> Iterator[str]:
         yield from map(str, (message.head, *message.sections.values(), message.pager))
     for block in step.predictions():
         sketch = Answer(times=(0.0, 1.0), values=(0.0, 1.0))
-        ways = [Progress(notes={lesson.name: Notes(answers={str(run.index): sketch})})]
+        ways = [Progress(notes={lesson.name: notes_with(answers={str(run.index): sketch})})]
         found = distribution(block, lesson.name, str(run.index), ways)
         for revealed in (True, False):
             yield class_html.prediction_view(block, found, None, revealed, words)
@@ -218,7 +220,7 @@ def answered(step: Step, run: LessonRun) -> Iterator[Notes]:
         elif isinstance(block, Choice):
             why = Answer(option=0, sure="certain", reason=0 if block.reasons else None, why="<b>")
             answers["answers"] = {str(run.index): why}
-    yield replace(notes, **answers)
+    yield replace(notes, given=notes_with(**answers).given)
 
 
 @pytest.mark.parametrize("language", languages())
@@ -228,7 +230,7 @@ def test_every_step_of_every_lesson_is_well_formed(name: str, language: str) -> 
     lesson = COURSE.lesson(name, language)
     tasks = {task.id: 1.5 for task in lesson.tasks()}
     for index in range(len(lesson.steps)):
-        notes = {name: Notes(step=index, tasks=tasks, hints=dict.fromkeys(tasks, 9))}
+        notes = {name: notes_with(step=index, tasks=tasks, hints=dict.fromkeys(tasks, 9))}
         run = LessonRun(COURSE, Progress(lesson=name, language=language, notes=notes))
         for piece in pieces(run, run.words):
             assert type(piece) is str  # viser's messages hold nothing else

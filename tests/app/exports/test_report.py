@@ -23,10 +23,12 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.lesson_run import LessonRun
 from onpath.lessons import prose
 from onpath.lessons.course import Course, read_course
-from onpath.lessons.progress import Answer, Notes, Progress, Truth
+from onpath.lessons.given import Answer
+from onpath.lessons.progress import Notes, Progress, Truth
 from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import FIVE_BAR
 from tests.support.built_in import built_in_course
+from tests.support.given import notes_with
 from tests.support.lab import do, loop_cache, run
 from tests.support.lesson_texts import LESSON, write_lesson
 from tests.support.waiting import wait_for
@@ -97,7 +99,7 @@ def page_of(course: Course, notes: dict[str, Notes], language: str = "en") -> Pa
 
 
 def full() -> Notes:
-    return Notes(
+    return notes_with(
         seen=8,
         answers={"1": SKETCH, "3": Answer(option=0)},
         truths={"1": TRUTH, "3": TRUTH},
@@ -112,14 +114,14 @@ def strokes(picture: str, colour: str) -> int:
 
 
 def test_a_sketch_stands_beside_what_both_robots_did(course: Course) -> None:
-    page = page_of(course, {NAME: Notes(seen=3, answers={"1": SKETCH}, truths={"1": TRUTH})})
+    page = page_of(course, {NAME: notes_with(seen=3, answers={"1": SKETCH}, truths={"1": TRUTH})})
     assert "Draw the distance." in page.text
     assert "41 mm at 1 s" in page.text
     assert "Tracker 47 mm at 0.5 s" in page.text and "Follower 2 mm at 0.5 s" in page.text
     (picture,) = page.pictures()
     for colour in (SELECTED, VERMILLION, AZURE):
         assert strokes(picture, colour.hex) == 1
-    (alone,) = page_of(course, {NAME: Notes(seen=2, answers={"1": SKETCH})}).pictures()
+    (alone,) = page_of(course, {NAME: notes_with(seen=2, answers={"1": SKETCH})}).pictures()
     assert strokes(alone, SELECTED.hex) == 1 and strokes(alone, VERMILLION.hex) == 0
 
 
@@ -136,18 +138,18 @@ def test_all_that_was_done_is_counted(course: Course) -> None:
     ):
         assert said in page.text
     assert "You chose: b" in page.text and "Correct answer: a" in page.text
-    right = replace(full(), answers={"3": Answer(option=1)})
+    right = notes_with(answers={"3": Answer(option=1)}, truths={"3": TRUTH})
     assert b"<td>1 of 1</td></tr>" in page_of(course, {NAME: right}).content
 
 
 def test_the_answer_is_not_told_before_it_has_happened(course: Course) -> None:
-    page = page_of(course, {NAME: Notes(seen=4, answers={"3": Answer(option=0)})})
+    page = page_of(course, {NAME: notes_with(seen=4, answers={"3": Answer(option=0)})})
     assert "You chose: this" in page.text and "<td>–</td></tr>".encode() in page.content
     assert "Right" not in page.text.replace("Choices right", "") and "that" not in page.text
 
 
 def test_what_was_skipped_is_said(course: Course) -> None:
-    page = page_of(course, {NAME: Notes(seen=3, answers={"1": Answer()}, truths={"1": TRUTH})})
+    page = page_of(course, {NAME: notes_with(seen=3, answers={"1": Answer()}, truths={"1": TRUTH})})
     assert Words("en")("lesson.skipped") in page.text
     (picture,) = page.pictures()
     assert strokes(picture, SELECTED.hex) == 0 and strokes(picture, VERMILLION.hex) == 1
@@ -192,7 +194,7 @@ def test_an_empty_record_says_so(course: Course) -> None:
 def test_german_is_german(tmp_path: Path) -> None:
     course = built_in_course()[0]
     name = next(name for name in course.lessons if "de" in course.lessons[name])
-    notes = Notes(
+    notes = notes_with(
         seen=3, answers={"1": SKETCH}, truths={"1": replace(TRUTH, times=(0.0, 0.5, 1.0))}
     )
     page = page_of(course, {name: notes}, "de")
@@ -206,7 +208,7 @@ def test_german_is_german(tmp_path: Path) -> None:
 
 
 def test_notes_that_no_longer_fit_are_left_out_and_counted(course: Course) -> None:
-    foreign = Notes(
+    foreign = notes_with(
         step=70,
         seen=99,
         answers={"0": SKETCH, "x": SKETCH, "1": Answer(option=1), "3": Answer(option=2)},
@@ -234,7 +236,7 @@ truths = st.builds(
     follower=points,
 )
 any_notes = st.builds(
-    Notes,
+    notes_with,
     seen=st.integers(0, 1000),
     answers=st.dictionaries(keys, answers, max_size=3),
     truths=st.dictionaries(keys, truths, max_size=3),
@@ -251,7 +253,7 @@ def test_any_notes_make_a_page(course: Course, notes: dict[str, Notes]) -> None:
 
 def test_numbers_beyond_the_axes_make_a_page(course: Course) -> None:
     huge = Truth("distance", (0.0, 1e300, -1e308), (1e308, -1e308, 0.0), (0.0, 5e-324, 1.0))
-    page = page_of(course, {NAME: Notes(answers={"1": SKETCH}, truths={"1": huge})})
+    page = page_of(course, {NAME: notes_with(answers={"1": SKETCH}, truths={"1": huge})})
     assert len(page.pictures()) == 1
 
 

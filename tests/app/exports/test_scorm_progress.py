@@ -161,7 +161,9 @@ def test_a_score_is_sent_when_something_was_judged_and_the_teacher_wants_it(
         assert scores()[-1] == "100"
 
 
-def test_the_first_answer_to_a_quiz_counts(version: str, package: str) -> None:
+def test_a_right_second_answer_to_a_quiz_counts_half_and_the_platform_is_told_both(
+    version: str, package: str
+) -> None:
     """After it, the page shows the right one."""
     page = Opened(version, package)
     judged = page.ask(JUDGED)
@@ -176,9 +178,17 @@ def test_the_first_answer_to_a_quiz_counts(version: str, package: str) -> None:
                 question.querySelector("button").click()
             }}"""
         )
-    assert page.ask(f"site.notes.quiz['{step}.{place}']") == right
+    given = page.ask("site.notes.given")
+    assert [(e["item"], e["attempt"], e["right"]) for e in given] == [
+        (f"{step}.{place}", 1, False),
+        (f"{step}.{place}", 2, True),
+    ]
+    told = page.ask("api().cmi.interactions.childArray.map(({id, result}) => [id, result])")
+    wrong = "wrong" if version == "1.2" else "incorrect"
+    ids = [f"{LESSON}.{step}.{place}.{attempt}" for attempt in (1, 2)]
+    assert told == [[ids[0], wrong], [ids[1], "correct"]]
     page.ask(DO_ALL)
-    share = 1 - 1 / len(judged)
+    share = 1 - 0.5 / len(judged)
     assert float(page.told(SCORE[version])) == share * FULL[version]
     assert page.told(STATUS[version]) == "completed"
     page.left()
@@ -218,13 +228,15 @@ def test_texts_that_are_cut_are_told(version: str, package: str) -> None:
     page.ask(
         """() => {
             for (const step of [1, 4, 7, 8, 9, 10])
-                site.notes.answers[step] = {option: 0, why: "because ".repeat(124)}
+                site.notes.given.push({
+                    item: String(step), answer: {option: 0, why: "because ".repeat(124)},
+                })
             site.student.save()
             site.student.save()
         }"""
     )
     assert page.notice().count("your longest texts") == (version == "1.2")
-    assert len(page.ask("site.notes.answers[1].why")) == 992  # in the page, they are whole
+    assert len(page.ask("site.notes.given[0].answer.why")) == 992  # in the page, they are whole
     assert len(page.told("cmi.suspend_data")) <= MOST[version]
     page.left()
 

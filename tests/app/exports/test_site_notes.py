@@ -67,21 +67,32 @@ def some_notes(rng: np.random.Generator) -> Notes:
     answers: dict[str, Any] = {str(i): some_curve(rng) for i in range(curves)}
     for i in range(reasons):
         answers.setdefault(str(i), {"option": int(rng.integers(4))})["why"] = some_text(rng)
+    quizzes, numbers, tasks = rng.integers(0, [6, 2, 5])
+    given = [event(key, answer={**own, "sure": "certain"}) for key, own in answers.items()]
+    for attempt, option in ((1, 1), (2, 2)):
+        quiz = (f"{i}.1" for i in range(quizzes))
+        given += [event(key, attempt, answer={"option": option}, right=False) for key in quiz]
+    given += [event(f"{i}.3", number=1 / 3, right=True) for i in range(numbers)]
+    given += [event(f"{i}.2", text=some_text(rng)) for i in range(written)]
+    values = rng.random(tasks).round(3).tolist()
+    given += [event(f"a-task-{i}", number=each, way=0, hints=1) for i, each in enumerate(values)]
     return {
         "student": "4294967295-4294967295",
         f"notes.{LESSON}": {
             "step": int(rng.integers(12)),
             "seen": 12,
-            "answers": {key: {**own, "sure": "certain"} for key, own in answers.items()},
             "truths": {},
             "played": {str(i): True for i in range(rng.integers(6))},
-            "tasks": {f"a-task-{i}": float(rng.random().__round__(3)) for i in range(4)},
-            "quiz": {f"{i}.1": 2 for i in range(rng.integers(6))},
-            "first": {f"{i}.1": 1 for i in range(rng.integers(6))},
-            "numbers": {"3.1": 1 / 3},
-            "written": {f"{i}.2": some_text(rng) for i in range(written)},
+            "hints": {f"a-task-{i}": 1 for i in range(tasks)},
+            "given": given,
         },
     }
+
+
+def event(item: str, attempt: int = 1, **said: Any) -> dict[str, Any]:
+    """An answer, as the page notes it."""
+    versions = {"lesson": "0123456789ab", "product": "0.2.0"}
+    return {"item": item, "attempt": attempt, "time": 1764519000.123, **said, **versions}
 
 
 def is_kept(drawn: Notes, kept: Notes) -> bool:
@@ -104,14 +115,12 @@ def differences(notes: Notes, read: Notes, cut: bool) -> list[str]:
     """What was left out, by what it is; asserts that all the rest is the same."""
     found = list[str]()
     given, own = (copy.deepcopy(each)[f"notes.{LESSON}"] for each in (notes, read))
-    for key, answer in given["answers"].items():
-        other = own["answers"][key]
+    for one, other in zip(given["given"], own["given"], strict=True):
+        answer, kept = one.get("answer", {}), other.get("answer", {})
         if "times" in answer:
-            found += [] if is_kept(answer, other) else ["points"]
-            answer |= {name: other[name] for name in ("times", "values")}
-        found += shortened(answer, other, "why")
-    for key in given["written"]:
-        found += shortened(given["written"], own["written"], key)
+            found += [] if is_kept(answer, kept) else ["points"]
+            answer |= {name: kept[name] for name in ("times", "values")}
+        found += shortened(answer, kept, "why") + shortened(one, other, "text")
     assert own == given and read["student"] == notes["student"]
     assert cut or "letters" not in found
     return found
@@ -166,11 +175,12 @@ def test_six_curves_and_three_long_reasons_have_room(page: NodePage) -> None:
         answers: Notes = {str(i): dict(curve) for i in range(curves)}
         for i in range(3):
             answers.setdefault(str(i), {"option": 1})["why"] = "Because " * 124
-        notes[f"notes.{LESSON}"] |= {"answers": answers, "written": {}}
+        given = [event(key, answer=each) for key, each in answers.items()]
+        notes[f"notes.{LESSON}"]["given"] = given
         (packed,) = page.evaluate(SEVERAL, [[notes], ROOM])
         assert not packed["cut"]
         (read,) = page.evaluate(READ, [packed["text"]])
-        own = read[f"notes.{LESSON}"]["answers"]["0"]
+        own = read[f"notes.{LESSON}"]["given"][0]["answer"]
         assert np.abs(np.interp(times, own["times"], own["values"]) - arches(147)).max() < most
 
 
@@ -181,13 +191,16 @@ def test_honest_work_on_a_whole_lesson_has_room(page: NodePage, course: Course) 
     curve = {"times": times, "values": arches(MOST_DRAWN).round(3).tolist()}
     for name in course.lessons:
         notes = all_done(steps_of(course, name))
-        for answer in notes["answers"].values():
-            answer |= {"sure": "certain"} | (curve if "times" in answer else {"why": SENTENCE})
-        notes["written"] = dict.fromkeys(notes["written"], 3 * SENTENCE)
+        for each in notes["given"]:
+            if each["item"].isdecimal():
+                more = curve if "times" in each["answer"] else {"why": SENTENCE}
+                each["answer"] |= {"sure": "certain"} | more
+            elif "text" in each:
+                each["text"] = 3 * SENTENCE
         kept = {"student": "4294967295-4294967295", f"notes.{name}": notes}
         (packed,) = page.evaluate(SEVERAL, [[kept], ROOM])
         (read,) = page.evaluate(READ, [packed["text"]])
-        own = read[f"notes.{name}"]["answers"].values()
+        own = [each.get("answer", {}) for each in read[f"notes.{name}"]["given"]]
         assert not packed["cut"], name
         assert all(len(each["times"]) == MOST_DRAWN for each in own if "times" in each), name
 
@@ -221,8 +234,8 @@ def steps_of(course: Course, name: str) -> Steps:
 
 
 def empty(steps: Steps) -> Notes:
-    kinds = ("answers", "truths", "played", "tasks", "quiz", "first", "numbers", "written")
-    return {"step": 0, "seen": len(steps), **{kind: {} for kind in kinds}}
+    kinds = ("truths", "played", "hints")
+    return {"step": 0, "seen": len(steps), "given": [], **{kind: {} for kind in kinds}}
 
 
 def right_rows(lines: list[dict[str, Any]]) -> Iterator[str]:
@@ -248,19 +261,22 @@ def all_done(steps: Steps) -> Notes:
         for j, block in enumerate(step["blocks"]):
             key = f"{i}.{j}"
             if block["kind"] == "sketch":
-                notes["answers"][str(i)] = {"times": [0, 1], "values": [0, 1]}
+                said = event(str(i), answer={"times": [0, 1], "values": [0, 1]})
             elif block["kind"] == "choice":  # a wrong one
-                notes["answers"][str(i)] = {"option": 1 - min(1, block["right"])}
+                said = event(str(i), answer={"option": 1 - min(1, block["right"])}, right=False)
             elif block["kind"] == "quiz" and "uncounted" not in block:
-                notes["quiz"][key] = notes["first"][key] = block["right"]
+                said = event(key, answer={"option": block["right"]}, right=True)
             elif block["kind"] == "number":
-                notes["numbers"][key] = notes["first"][key] = block["number"]
+                said = event(key, number=block["number"], right=True)
             elif block["kind"] == "open":
-                notes["written"][key] = "Because."
+                said = event(key, text="Because.")
             elif block["kind"] == "derivation":
-                notes["written"][key] = "\n".join(right_rows(block["lines"]))
+                said = event(key, text="\n".join(right_rows(block["lines"])), right=True)
             elif "checks" in block:
-                notes["tasks"][block["id"]] = 0
+                said = event(block["id"], number=0, right=True, way=0)
+            else:
+                continue
+            notes["given"].append(said)
     return notes
 
 
@@ -286,27 +302,63 @@ def test_a_grade_is_for_what_is_done_and_right(page: NodePage, course: Course, n
         for j, block in enumerate(step["blocks"])
         if block["kind"] == "derivation"
     }
-    for kind in ("answers", "played", "tasks", "quiz", "numbers", "written"):
-        for key in whole[kind]:
-            notes = copy.deepcopy(whole)
-            del notes[kind][key]
-            notes["first"].pop(key, None)
-            progress, score = graded(page, steps, notes)
-            is_judged = kind in ("tasks", "quiz", "numbers") or key in derived
-            begun = any(notes[each] for each in ("tasks", "quiz", "numbers")) or (
-                derived & notes["written"].keys()
-            )
-            assert progress < 1
-            assert (score is None) == (not begun)
-            assert score is None or (score < 1) == is_judged
-    for key in whole["answers"]:
-        skipped = {**whole, "answers": {**whole["answers"], key: {}}}
-        assert graded(page, steps, skipped)[0] < 1
+    for key in whole["played"]:
+        played = {each: True for each in whole["played"] if each != key}
+        assert graded(page, steps, {**whole, "played": played})[0] < 1
+    for each in whole["given"]:
+        others = [other for other in whole["given"] if other is not each]
+        progress, score = graded(page, steps, {**whole, "given": others})
+        assert progress < 1
+        assert (score is None) == (not any(is_judged(other, derived) for other in others))
+        assert score is None or (score < 1) == is_judged(each, derived)
+        if each["item"].isdecimal():
+            skipped = [*others, event(each["item"], answer={})]
+            assert graded(page, steps, {**whole, "given": skipped})[0] < 1
     assert graded(page, steps, {**whole, "seen": 0})[0] < 1
-    for key, first in whole["first"].items():  # wrong, and then corrected
-        corrected = {**whole, "first": {**whole["first"], key: first + 1e6}}
-        progress, score = graded(page, steps, corrected)
-        assert progress == 1 and score is not None and score < 1
+
+
+def is_judged(given: dict[str, Any], derived: set[str]) -> bool:
+    """Whether an answer counts in a score: to a question that is judged, or to a task."""
+    return given["item"] in derived or ("right" in given and not given["item"].isdecimal())
+
+
+@pytest.mark.usefixtures("no_figures")
+def test_a_second_answer_counts_half_and_a_task_after_its_recipe_nothing(
+    page: NodePage, course: Course
+) -> None:
+    """Of everything that was right at once, some at random is right at the second answer, some
+    never, and some tasks are passed after some hints: each costs what the page says."""
+    rng = np.random.default_rng(9)
+    for name in course.lessons:
+        steps = steps_of(course, name)
+        blocks = [block for step in steps for block in step["blocks"]]
+        hints = {block["id"]: block["hints"] for block in blocks if block.get("checks")}
+        whole = all_done(steps)
+        lines = sum(
+            len(block["lines"])
+            for step in steps
+            if not step["optional"]
+            for block in step["blocks"]
+            if block["kind"] == "derivation"
+        )
+        given, points = list[dict[str, Any]](), [1.0] * lines
+        for each in whole["given"]:
+            item = each["item"]
+            if item in hints:
+                seen = int(rng.integers(hints[item] + 1))
+                given.append({**each, "hints": seen})
+                points.append(float(not hints[item] or seen < hints[item]))
+            elif "right" in each and not item.isdecimal() and "text" not in each:
+                second = int(rng.integers(3))  # right at once, then, or never
+                wrong = {**each, "right": False}
+                given += (
+                    [each] if not second else [wrong, {**each, "attempt": 2, "right": second == 1}]
+                )
+                points.append((1.0, 0.5, 0.0)[second])
+            else:
+                given.append(each)
+        progress, score = graded(page, steps, {**whole, "given": given})
+        assert progress == 1 and score == (pytest.approx(np.mean(points)) if points else None)
 
 
 @pytest.mark.usefixtures("no_figures")
@@ -324,7 +376,8 @@ def test_tasks_to_be_found_by_trying_and_warm_up_questions_count_nothing(
                 if (is_quiz or "checks" in block) and not step["optional"] and rng.random() < 0.6:
                     block["uncounted" if is_quiz else "exploratory"], seen = True, seen + 1
                     other["blocks"][place] = {"kind": "text"}
-        some = {**empty(marked), "tasks": whole["tasks"], "quiz": whole["quiz"]}
+        judged = [each for each in whole["given"] if "way" in each or is_judged(each, set())]
+        some = {**empty(marked), "given": judged}
         for notes in (all_done(without), whole, some, empty(marked)):
             assert graded(page, marked, notes) == graded(page, without, notes)
     assert seen > 10
@@ -334,7 +387,7 @@ def test_without_anything_to_judge_there_is_no_score(page: NodePage) -> None:
     choice: dict[str, Any] = {"kind": "choice", "right": 0}
     step = {"optional": False, "script": None, "blocks": [choice, {"kind": "open"}]}
     optional = {"optional": True, "script": None, "blocks": [{"kind": "quiz", "right": 0}]}
-    notes = empty([step, optional]) | {"answers": {"0": {"option": 1}}}
+    notes = empty([step, optional]) | {"given": [event("0", answer={"option": 1}, right=False)]}
     assert graded(page, [step, optional], notes) == (pytest.approx(2 / 3), None)
-    notes["written"] = {"0.1": "So."}
+    notes["given"].append(event("0.1", text="So."))
     assert graded(page, [step, optional], notes) == (1, None)

@@ -21,7 +21,7 @@ from onpath.app.lab.commands.command_codec import (
     page_commands,
 )
 from onpath.lessons.action_schema import Action, Laws, RunStart
-from onpath.lessons.progress import SURENESS
+from onpath.lessons.given import SURENESS
 
 NUMBERS = st.floats(-LARGEST, LARGEST)
 WHOLE = st.integers(-int(LARGEST), int(LARGEST))

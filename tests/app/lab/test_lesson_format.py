@@ -21,8 +21,9 @@ from onpath.lessons.adaptive.branches import answers_meant, is_shown
 from onpath.lessons.adaptive.own_numbers import filled
 from onpath.lessons.checks import verdict
 from onpath.lessons.course import Course, read_course
+from onpath.lessons.given import Answer
 from onpath.lessons.measures.earlier_run import EarlierRun
-from onpath.lessons.progress import Answer, Notes
+from onpath.lessons.progress import Notes
 from onpath.lessons.record import Record
 from onpath.lessons.schema import Choice, NumberQuestion, Option, Quiz, Step, Text
 from onpath.lessons.task_schema import Better, Task
@@ -30,6 +31,7 @@ from onpath.lessons.words import Words
 from onpath.models.closed_loop.lab_settings import RATES
 from onpath.models.systems.catalogue import FIVE_BAR
 from tests.support.format_texts import FORMAT_LESSON, FORMAT_REFERENCE
+from tests.support.given import notes_with
 from tests.support.lab import FOLLOWER, FRAME, do, loop_cache, run
 from tests.support.lesson_texts import write_lesson
 
@@ -111,7 +113,7 @@ def test_a_branch_is_passed_over_by_those_whom_it_does_not_concern(lab: Lab) -> 
     for option, wanted in ((0, TASK), (1, FOR_SOME)):
         do(lab, c.OpenLesson(NAME))
         lab.lessons.open_at(NAME, 3, lab)
-        lab.lessons.note(answers={})
+        lab.lessons.note(given=())
         do(lab, c.Predict(option=option), c.GoToStep(1), c.GoToStep(1))
         assert lab.lessons.index == EXPLAIN
         shown = _texts(lab)
@@ -130,10 +132,13 @@ NUMBER = NumberQuestion("?", 60.0, 0.5, "60")
 @pytest.mark.parametrize(
     ("asked", "notes", "answer"),
     [
-        *((CHOICE, Notes(answers={"0": Answer(option=i)}), i) for i in range(3)),
-        (CHOICE, Notes(answers={"0": Answer()}), -1),
-        *((QUIZ, Notes(quiz={"0.0": i}), i) for i in range(3)),
-        *((NUMBER, Notes(numbers={"0.0": x}), int(x in (60.0, 59.5))) for x in (60.0, 59.5, 59.4)),
+        *((CHOICE, notes_with(answers={"0": Answer(option=i)}), i) for i in range(3)),
+        (CHOICE, notes_with(answers={"0": Answer()}), -1),
+        *((QUIZ, notes_with(quiz={"0.0": i}), i) for i in range(3)),
+        *(
+            (NUMBER, notes_with(numbers={"0.0": x}), int(x in (60.0, 59.5)))
+            for x in (60.0, 59.5, 59.4)
+        ),
     ],
 )
 @pytest.mark.parametrize("when", ["right", "wrong", "skipped", "first"])
@@ -160,7 +165,7 @@ def test_the_student_s_own_numbers_are_in_the_text(lab: Lab) -> None:
     lab.lessons.open_at(NAME, EXPLAIN, lab)
     assert "You drew <em>nothing</em>, and chose: –." in _texts(lab)
     answers = {"1": Answer(times=(0.0, 1.0), values=(3.0, 12.34)), "3": Answer(option=0)}
-    lab.lessons.note(answers=answers)
+    lab.lessons.note(given=notes_with(answers=answers).given)
     assert "You drew 12.3, and chose: this." in _texts(lab)
 
 

@@ -20,7 +20,8 @@ from onpath.app.lab.sketches import sketched
 from onpath.lessons.action_schema import Action
 from onpath.lessons.checks import judge
 from onpath.lessons.course import Course, read_course
-from onpath.lessons.progress import MOST_POINTS, Answer, Progress, read_progress
+from onpath.lessons.given import MOST_POINTS, Answer
+from onpath.lessons.progress import Progress, read_progress
 from onpath.lessons.schema import Sketch
 from onpath.lessons.task_schema import Event, Task
 from onpath.lessons.words import ENGLISH, Words

@@ -22,7 +22,8 @@ from onpath.app.server.built_in_course import built_in_course
 from onpath.app.server.lab_server import LabServer
 from onpath.app.viser_adapter.addresses import class_address
 from onpath.app.viser_adapter.data_channel import NO_GREETING
-from onpath.lessons.progress import Answer, Notes, Progress, Truth
+from onpath.lessons.given import Answer
+from onpath.lessons.progress import Notes, Progress, Truth
 from onpath.lessons.schema import Choice
 from onpath.lessons.words import Words
 from tests.support import waiting

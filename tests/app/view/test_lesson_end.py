@@ -16,7 +16,8 @@ from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
 from onpath.app.server.server_options import ServerOptions
 from onpath.lessons.course import read_course
-from onpath.lessons.progress import Answer, Truth
+from onpath.lessons.given import Answer
+from onpath.lessons.progress import Truth
 from tests.support.lab import do, loop_cache, new_lab
 from tests.support.lesson_texts import LESSON, write_lesson
 from tests.support.student import PATIENCE, Student

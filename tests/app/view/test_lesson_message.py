@@ -24,7 +24,8 @@ from onpath.app.view.lesson_message import lesson_message, measured
 from onpath.app.view.lesson_view import LessonView
 from onpath.app.view.step_navigation import RECORD
 from onpath.lessons.concept_test.concept_test import AFTER, BEFORE
-from onpath.lessons.progress import Answer, Truth
+from onpath.lessons.given import Answer
+from onpath.lessons.progress import Notes, Truth
 from onpath.lessons.schema import (
     KINDS,
     Choice,
@@ -38,6 +39,7 @@ from onpath.lessons.schema import (
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
 from tests.support.built_in import built_in_course
+from tests.support.given import notes_with
 from tests.support.lab import do, loop_cache, run
 from tests.support.pupil import expanded
 
@@ -71,8 +73,16 @@ def at(lab: Lab, name: str, index: int, **notes: Any) -> None:
     lab.lessons.progress = replace(lab.lessons.progress, notes={}, route="", ended=False)
     do(lab, TakeStep(name, index))
     lessons = lab.lessons
-    changed = replace(lessons.notes, **notes)
+    noted = notes_with(**notes)
+    kept = {name: getattr(noted, name) for name in notes if name in Notes.__struct_fields__}
+    changed = replace(lessons.notes, given=noted.given, **kept)
     lessons.progress = replace(lessons.progress, notes={name: changed})
+
+
+def given_in(message: dict[str, Any]) -> dict[str, dict[str, Any]]:
+    """The answers that the page is told, by item, none of which says what is right."""
+    assert not any("right" in each for each in message["notes"]["given"])
+    return {each["item"]: each for each in message["notes"]["given"]}
 
 
 def html(message: dict[str, Any]) -> str:
@@ -150,13 +160,13 @@ def test_a_quiz_is_judged_once_it_is_answered(lab: Lab, name: str, index: int, p
     at(lab, name, index)
     block = step_of(lab).blocks[place]
     assert isinstance(block, Quiz)
-    for option, twice in product(range(len(block.options)), ((), (key,))):
-        at(lab, name, index, quiz={key: option}, twice=twice)
+    for option, twice in product(range(len(block.options)), (False, True)):
+        at(lab, name, index, quiz={key: option}, attempt=1 + twice)
         message = told(lab)
         data = message["steps"][index]["blocks"][place]
-        is_told = block.options[option].right or bool(twice)
+        is_told = block.options[option].right or twice
         assert ("right" in data) == is_told and (not is_told or block.options[data["right"]].right)
-        assert message["notes"]["quiz"] == {key: option}
+        assert given_in(message)[key]["answer"] == {"option": option}
         answers = re.findall(r'data-answer="(.)"', message["sections"][str(index)])
         assert answers == ([*map(str, range(len(block.options)))] if is_told else [str(option)])
 
@@ -170,13 +180,13 @@ def test_a_number_is_judged_once_it_is_answered(lab: Lab) -> None:
         block = step_of(lab).blocks[place]
         assert isinstance(block, NumberQuestion)
         known = [each.number for each in block.wrong]
-        for number, twice in product((block.number, block.number + 1e3, *known), ((), (key,))):
-            at(lab, name, index, numbers={key: number}, twice=twice)
+        for number, twice in product((block.number, block.number + 1e3, *known), (False, True)):
+            at(lab, name, index, numbers={key: number}, attempt=1 + twice)
             message = told(lab)
             data = message["steps"][index]["blocks"][place]
-            is_told = number == block.number or bool(twice)
+            is_told = number == block.number or twice
             assert data.get("number") == (block.number if is_told else None)
-            assert message["notes"]["numbers"] == {key: number}
+            assert given_in(message)[key]["number"] == number
             answers = [int(i) for i in re.findall(r'data-answer="(.)"', html(message))]
             replies = [known.index(number)] if number in known else []
             assert answers == ([*range(len(known))] if is_told else replies)
@@ -205,7 +215,7 @@ def test_a_text_is_kept_and_the_model_answer_is_told(lab: Lab) -> None:
     for name, index, place in places(OpenQuestion):
         at(lab, name, index, written={f"{index}.{place}": "<b>so"})
         message = told(lab)
-        assert message["notes"]["written"] == {f"{index}.{place}": "<b>so"}
+        assert given_in(message)[f"{index}.{place}"]["text"] == "<b>so"
         assert "after" in message["sections"][str(index)]
         at(lab, name, index)
         assert 'class="after"' not in told(lab)["sections"][str(index)]
@@ -232,7 +242,7 @@ def test_what_is_right_is_told_by_the_run_that_shows_it(
         assert ("right" in data) == (seen and isinstance(block, Choice))
         assert ("data-answer" in section) == (seen and isinstance(block, Choice))
         kept = message["notes"]
-        assert kept["answers"][str(index)]["option" if answer.option else "times"]
+        assert given_in(message)[str(index)]["answer"]["option" if answer.option else "times"]
         assert (str(index) in kept["truths"]) == seen and bool(kept["played"]) == seen
         assert ("You were: certain" in unescape(section)) == isinstance(block, Choice)
 

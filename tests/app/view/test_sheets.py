@@ -33,6 +33,7 @@ from onpath.models.paths.curves import circle
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
 from tests.support.built_in import built_in_course
+from tests.support.given import notes_with
 from tests.support.lab import do, new_lab
 
 COURSE, _ = built_in_course()
@@ -107,9 +108,9 @@ def test_a_lesson_is_finished_when_its_steps_are_seen_and_its_tasks_passed() -> 
     new, begun = card({}), card({name: Notes(seen=1)})
     assert (new.done, new.begun, new.finished) == (0.0, False, False)
     assert 0 < begun.done < 1 and begun.begun and not begun.finished
-    all_seen = card({name: Notes(seen=len(lesson.steps))})
+    all_seen = card({name: notes_with(seen=len(lesson.steps))})
     assert begun.done < all_seen.done < 1 and not all_seen.finished
-    done = card({name: Notes(seen=len(lesson.steps), tasks=tasks)})
+    done = card({name: notes_with(seen=len(lesson.steps), tasks=tasks)})
     assert done.done == 1 and done.finished
 
 

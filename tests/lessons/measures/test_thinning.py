@@ -12,8 +12,9 @@ from hypothesis.extra.numpy import arrays
 from onpath.app.classroom.class_html import prediction_view
 from onpath.app.classroom.results import Distribution
 from onpath.app.classroom.sketches_html import MOST_POINTS
+from onpath.lessons.given import Answer
 from onpath.lessons.measures.thinning import intervals, peaks
-from onpath.lessons.progress import Answer, Truth
+from onpath.lessons.progress import Truth
 from onpath.lessons.schema import Sketch
 from onpath.lessons.words import Words
 

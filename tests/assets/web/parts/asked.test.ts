@@ -2,7 +2,7 @@ import { TEXTS } from "../page"
 import assert from "node:assert/strict"
 import { test } from "node:test"
 import type { BlockData, PageData } from "../../../../assets/web/core/lesson_data"
-import { noNotes } from "../../../../assets/web/lessons/notes"
+import { noNotes, noted } from "../../../../assets/web/lessons/notes"
 import type { Student } from "../../../../assets/web/lessons/student"
 import { ask } from "../../../../assets/web/parts/asked"
 
@@ -20,11 +20,11 @@ function asked(block: BlockData, inside: string, isTest = false, way = (): strin
     const page = { words: TEXTS.words, lesson: "a", test: isTest, steps: [{ kind: "quiz", blocks: [block] }] } as unknown as PageData
     const element = document.querySelector<HTMLElement>("[data-block]")!
     const notes = noNotes()
-    const gives = (kind: "quiz" | "numbers") => (key: string, given: number) => {
-        notes[kind][key] = given
-        notes.first[key] ??= given
-    }
-    const student = { notes, name: "", chooses: gives("quiz"), gives: gives("numbers"), way } as unknown as Student
+    const student = {
+        notes, name: "", way,
+        chooses: (item: string, option: number) => noted(notes, { item, answer: { option } }),
+        gives: (item: string, number: number) => noted(notes, { item, number }),
+    } as unknown as Student
     const shows = ask(page, element, block, "0.0", student)
     const show = () => {
         shows()

@@ -2,7 +2,7 @@ import { TEXTS } from "../page"
 import assert from "node:assert/strict"
 import { test } from "node:test"
 import type { DerivationData, PageData } from "../../../../assets/web/core/lesson_data"
-import { noNotes } from "../../../../assets/web/lessons/notes"
+import { noNotes, noted, lastSaid } from "../../../../assets/web/lessons/notes"
 import type { Student } from "../../../../assets/web/lessons/student"
 import { derive } from "../../../../assets/web/parts/derivation"
 
@@ -19,7 +19,7 @@ function page(data = DATA) {
     document.body.innerHTML = `<div id="box"><ol>${LINE(0)}${LINE(1)}</ol><p class="verdict"></p><details class="after">so</details></div>` // oxlint-disable-line no-restricted-properties
     const element = document.getElementById("box")!
     const notes = noNotes()
-    const derives = (key: string, row: string) => (notes.written[key] = [notes.written[key], row].filter(Boolean).join("\n"))
+    const derives = (key: string, row: string) => noted(notes, { item: key, text: [lastSaid(notes, key), row].filter(Boolean).join("\n") })
     const student = { notes, name: "", derives, way: () => "" } as unknown as Student
     const told = { words: TEXTS.words, lesson: "a", steps: [{ blocks: [data] }] } as unknown as PageData
     const show = derive(told, element, data, "0.0", student)
@@ -47,7 +47,7 @@ test("a wrong line is answered by name, a second one closes it, and an own value
     assert.deepEqual(shown(), [true, true, true, false, false])
     assert.ok(type(1, "6K1").includes("answer.carried"))
     assert.deepEqual(shown(), [true, true, true, true, true])
-    assert.equal(notes.written["0.0"], "K1\n3K1\n6K1")
+    assert.equal(lastSaid(notes, "0.0"), "K1\n3K1\n6K1")
     assert.equal(type(1, "2sqrt(K1)").includes("lesson.right"), false) // it is closed
 })
 
@@ -55,7 +55,7 @@ test("what cannot be read is marked at its place, and kept nowhere", () => {
     const { type, notes } = page()
     assert.ok(type(0, "sqrt(K1").includes("sqrt(K1▸"))
     assert.ok(type(0, "x").includes("▸x"))
-    assert.deepEqual(notes.written, {})
+    assert.deepEqual(notes.given, [])
     assert.ok(type(0, "sqrt(K1)").includes("lesson.right"))
 })
 
