@@ -15,11 +15,15 @@ class Periodic:
         name: of the thread.
         every: pause before each call, [s].
         act: the function.
+
+    Attributes:
+        awake: while it is not set, no call is made.
     """
 
     def __init__(self, name: str, every: float, act: Callable[[], object]) -> None:
         self._every, self._act = every, act
-        self._stop = threading.Event()
+        self._stop, self.awake = threading.Event(), threading.Event()
+        self.awake.set()
         self._thread = threading.Thread(target=self._run, name=name, daemon=True)
 
     def start(self) -> None:
@@ -29,11 +33,12 @@ class Periodic:
     def stop(self, patience: float = 2.0) -> None:
         """Stop the thread, and wait up to `patience` [s] for a call in progress."""
         self._stop.set()
+        self.awake.set()
         if self._thread.is_alive():
             self._thread.join(patience)
 
     def _run(self) -> None:
-        while not self._stop.wait(self._every):
+        while self.awake.wait() and not self._stop.wait(self._every):
             try:
                 self._act()
             except Exception as error:

@@ -48,6 +48,7 @@ class ClassRemotes:
         self._class, self._course, self._teaching = classroom, course, teaching
         self._remotes, self._lock = list[Remote](), threading.Lock()
         self.rounds = Periodic("remotes", EVERY, self._tell)
+        self.rounds.awake.clear()  # until there is a remote control
 
     def add(self, visit: Visit, site: str) -> None:
         """Show a page the form, or the number with which it is let in, until its visit ends."""
@@ -55,11 +56,14 @@ class ClassRemotes:
         remote = Remote(visit, self._class, self._course, teaching)
         with self._lock:
             self._remotes.append(remote)
+            self.rounds.awake.set()
         visit.at_end(partial(self._remove, remote))
 
     def _remove(self, remote: Remote) -> None:
         with self._lock:
             self._remotes.remove(remote)
+            if not self._remotes:
+                self.rounds.awake.clear()
         remote.close()
 
     def _tell(self) -> None:

@@ -21,6 +21,7 @@ def notes_with(
     tasks: Mapping[str, float] = {},
     marks: Mapping[str, str] = {},
     attempt: int = 1,
+    way: int = 0,
     **more: Any,
 ) -> Notes:
     """Notes from which `Notes.answers` and the like read these.
@@ -29,6 +30,7 @@ def notes_with(
         second: answers to predictions that are asked again once.
         marks: keys of the chosen options.
         attempt: number of each answer.
+        way: in which the tasks were passed.
         more: other fields.
     """
     given = [Given(item, answer=answer) for item, answer in answers.items()]
@@ -36,6 +38,6 @@ def notes_with(
     given += [Given(item, answer=Answer(option=option)) for item, option in quiz.items()]
     given += [Given(item, number=number) for item, number in numbers.items()]
     given += [Given(item, text=text) for item, text in written.items()]
-    given += [Given(item, number=value, right=True, way=0) for item, value in tasks.items()]
+    given += [Given(item, number=value, right=True, way=way) for item, value in tasks.items()]
     marked = [replace(each, mark=marks.get(each.item, ""), attempt=attempt) for each in given]
     return Notes(given=tuple(marked), asked_again=tuple(second), **more)

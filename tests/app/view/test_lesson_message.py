@@ -268,7 +268,7 @@ def test_the_concept_test_tells_nothing_and_is_handed_in(lab: Lab) -> None:
     last = len(COURSE.lesson(BEFORE, "en").steps) - 1
     at(lab, BEFORE, last, quiz={f"{last}.0": 2})
     message = told(lab)
-    assert message["test"] and message["notes"]["quiz"] == {f"{last}.0": 2}
+    assert message["test"] and given_in(message)[f"{last}.0"]["answer"] == {"option": 2}
     assert "data-answer" not in html(message) and "right" not in message["steps"][last]["blocks"][0]
     assert "1 of 12 answered" in message["pager"] and "Hand in" in message["pager"]
     assert "CloseLesson" in html(message) and "BeginStepAnew" not in html(message)
@@ -346,9 +346,9 @@ def test_what_is_said_after_a_task_depends_on_how_it_was_passed(lab: Lab) -> Non
         for task in COURSE.lesson(name, "en").steps[index].tasks():
             texts = {way: plain(str(text)) for way, text in task.explanations.items()}
             for way in (*texts, len(task.way) + 1) if task.way else ():
-                at(lab, name, index, ways={task.id: way})
+                at(lab, name, index)
                 before = plain(html(told(lab)))
-                at(lab, name, index, ways={task.id: way}, tasks={task.id: 0.0})
+                at(lab, name, index, tasks={task.id: 0.0}, way=way)
                 page, expected = plain(html(told(lab))), way if way in texts else 0
                 assert not any(text in before for text in texts.values())
                 assert [each for each, text in texts.items() if text in page] == [expected]
