@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import secrets
+import socket
 import threading
 import time
 from contextlib import suppress
@@ -37,6 +38,7 @@ class OwnSocket:
 
     Args:
         address: URL of the websocket.
+        through: the port of a proxy of this computer that has the address; 0: none.
         kept: what the browser keeps; see `Hello`.
 
     Attributes:
@@ -44,11 +46,12 @@ class OwnSocket:
         told: all messages so far.
     """
 
-    def __init__(self, address: str, page: str = "", **kept: str) -> None:
+    def __init__(self, address: str, page: str = "", through: int = 0, **kept: str) -> None:
         self.page = page or secrets.token_hex(16)
         self.told: list[dict[str, Any]] = []
         self._socket = connect(
             address,
+            sock=socket.create_connection(("127.0.0.1", through)) if through else None,
             subprotocols=[Subprotocol(SUBPROTOCOL)],
             compression=None,
             close_timeout=0.5,

@@ -13,7 +13,8 @@ from math import inf
 import pytest
 
 from onpath.app.classroom.class_state import SETTLED
-from tests.support.site import needs_nginx
+from tests.support.own_socket import OwnSocket
+from tests.support.site import HOST, needs_nginx
 from tests.support.site_class import KEYS, Class, Running, quiet, return_to
 from tests.support.student import Student
 
@@ -83,6 +84,17 @@ def choose_the_step(klass: Class) -> None:
     klass.teacher.set("class.step", CHOICE)
 
 
+def wall_of(klass: Class) -> OwnSocket:
+    """A wall of the class."""
+    return OwnSocket(f"ws://{HOST}/{klass.prefix}/wall", through=klass.running.site.port)
+
+
+def asked_on(wall: OwnSocket) -> str:
+    """The question on a wall, as it was told last."""
+    told = (each["asked"] for each in reversed(list(wall.told)) if each["is"] == "wall")
+    return next(told, "")
+
+
 def stopped(klass: Class) -> list[bool]:
     """Which students are told that the teacher has stopped all labs."""
     return [each.sees("stopped all labs") for each in klass.names]
@@ -96,11 +108,16 @@ def test_what_students_did_5_s_before_a_kill_is_in_the_class_which_is_back_withi
         choose_the_step(klass)
         teacher.lead("send_step")
         until(lambda: all(each.sees(f"Step {CHOICE + 1} of") for each in klass.names))
+        wall = wall_of(klass)
+        until(lambda: asked_on(wall) and "frame" in wall.kinds())
+        asked = asked_on(wall)
         ada.tell({"do": "Predict", "option": 0})
         until(lambda: ANSWERED in teacher.values.get("class.answers", ""))
         ada.press("Free lab")
         until(lambda: not ada.sees(f"Step {CHOICE + 1} of"))
         lose_the_process(klass, ada, LOST + SETTLED)  # by then the step is known to be given her
+        with wall_of(klass) as again:  # as its page does by itself
+            until(lambda: asked_on(again) == asked and "frame" in again.kinds())
         choose_the_step(klass)
         until(lambda: ANSWERED in teacher.values.get("class.answers", ""))
         until(lambda: f"step {CHOICE + 1}" in teacher.values["class.standing"])

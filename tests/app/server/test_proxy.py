@@ -71,7 +71,7 @@ def test_a_student_whose_process_is_killed_goes_on_with_the_other(running: Runni
         student.read(lambda: student.sees("Step 2 of"))
         student.tell({"do": "Predict", "option": 1})
         student.read(lambda: student.has_button("Next") and not student.has_button("Commit"))
-        kept = ("'answers': {'1'", "'K2': 44.0", "'clover'")
+        kept = ("{'item': '1', ", "'K2': 44.0", "'clover'")
         student.read(lambda: running.has_kept(student.code, *kept))
         killed, code = running.site.serving(), student.code
         killed.kill()
