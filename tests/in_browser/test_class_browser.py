@@ -56,7 +56,9 @@ class Class:
 
     def open(self, tab: str) -> None:
         """Open one of the tabs of the teacher's page."""
-        self.page.get_by_role("tab", name=tab, exact=True).click()
+        found = self.page.get_by_role("tab", name=tab, exact=True)
+        if found.get_attribute("aria-selected") != "true":
+            found.click()
 
     def press(self, name: str | re.Pattern[str]) -> None:
         """Press a button of the teacher's page."""
@@ -114,6 +116,9 @@ def smallest(page: Page) -> float:
 
 def test_a_class_joins_is_frozen_led_and_watched_and_its_record_comes_down(tabs: Class) -> None:
     teacher, (first, second) = tabs.page, tabs.students
+    teacher.get_by_role("tab", name="Class", exact=True).wait_for()
+    assert teacher.get_by_role("tabpanel").count() == 0  # nothing but what acts on the class
+    tabs.open("Class")
     for name in NAMES:
         teacher.get_by_role("cell", name=name, exact=True).wait_for()
     assert tabs.teacher.page.locator("img[src=x]").count() == 0
@@ -307,8 +312,8 @@ def present(tabs: Class, on: bool) -> None:
     page = tabs.teacher.page
     tabs.teacher.ask(c.Set("presenting", on))
     wait_for(lambda: page.evaluate("document.documentElement.classList.contains('op-large')") == on)
-    tab = tabs.page.get_by_role("tab").nth(1 if on else 0)
-    wait_for(lambda: tab.get_attribute("aria-selected") == "true")
+    tab = tabs.page.get_by_role("tab").nth(1)
+    wait_for(lambda: tab.get_attribute("aria-selected") == str(on).lower())
     if not on:
         page.set_viewport_size({"width": WINDOWS[0][0], "height": WINDOWS[0][1]})
 

@@ -74,6 +74,8 @@ class TeacherForm:
         """What is always seen; nothing in it is final."""
         words, orders = self._words, self._teaching.classroom.orders
         fields = [*self._of_asking()]
+        if self._teaching.has_lab and not self._large and not self._teaching.classroom.members():
+            fields.append(_html("joining"))  # what is needed before anything else
         if self._course.lessons:
             fields += self._beside(-1)
             fields += self._beside(1)
@@ -99,10 +101,9 @@ class TeacherForm:
         if not self._large:
             yield _html("dots")
             yield _note("proposal")
-            if not self._teaching.has_lab:
-                yield _switch("peeks", words("class.peek"))
-                if self._choices.peeks:
-                    yield _html("peek")
+            yield _switch("peeks", words("class.peek"))
+            if self._choices.peeks:
+                yield _html("peek")
         yield _switch("shown", words("class.show_answers"))
         yield _switch("revealed", words("class.truth"))
         yield _button("ask_again", words("class.ask_again"))
@@ -293,6 +294,7 @@ class TeacherForm:
             screens="" if large else self._teaching.address,
         )
         yield "code", code
+        yield "joining", code
         yield "table", page.table(members, self._course, classroom.clock(), words)
         yield "follow", 0 if member is None else member.number
         yield "still", self._teaching.why_still(words)

@@ -54,7 +54,7 @@ class Remote {
     private showForm(data: FormMessage): void {
         if (!this.form) {
             this.form = new Form(data, this.host, new AbortController().signal)
-            this.panel = new ClassPanel(this.texts, this.form, true)
+            this.panel = new ClassPanel(this.texts, this.form)
             this.number.after(this.panel.element)
         }
         this.form.show(data)

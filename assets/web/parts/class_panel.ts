@@ -1,4 +1,5 @@
-// The class on a teacher's page: tabs with a group of its form each, and the first group, which is always seen.
+// The class on a teacher's page, on a laptop as on a phone: a bar with what acts on the class, the first group of its form,
+// and one level deeper the other groups, a tab each.
 
 import { made, tell } from "../core/dom"
 import type { FormMessage } from "../core/form_data"
@@ -13,20 +14,20 @@ export class ClassPanel {
     private chosen = ""
     private large: boolean | null = null
 
-    /** `folded`: nothing but the first group is seen until a tab is pressed, and when it is pressed again. */
-    constructor(texts: Texts, private readonly form: Form, private readonly folded = false) {
+    /** Nothing but the first group is seen until a tab is pressed, and when it is pressed again. */
+    constructor(texts: Texts, private readonly form: Form) {
         this.tabs.role = "tablist"
         this.tabs.ariaLabel = phrase(texts, "class.title")
         this.tabs.addEventListener("keydown", event => this.turn(event))
-        this.element = made("section", "class", ...(folded ? [form.element, this.tabs] : [this.tabs, form.element]))
+        this.element = made("section", "class", form.element, this.tabs)
         this.element.ariaLabel = phrase(texts, "class.title")
     }
 
-    /** Show the groups; for a projector, one without nicknames comes first. */
+    /** Show the groups; on a projector what the class is asked is seen, which has no nicknames. */
     show({ groups }: FormMessage, large: boolean): void {
         const { form, buttons, tabs } = this, [, ...others] = groups
         for (const { name, title } of others) {
-            const button = buttons.get(name) ?? pressed("", title, () => this.choose(this.folded && this.chosen === name ? "" : name))
+            const button = buttons.get(name) ?? pressed("", title, () => this.choose(this.chosen === name ? "" : name))
             if (!buttons.has(name)) {
                 button.role = "tab"
                 button.id = `op-tab-${name}`
@@ -42,7 +43,7 @@ export class ClassPanel {
         }
         const told = form.row("class.told")
         if (told) told.element.role = "status"
-        if (large !== this.large && !this.folded) this.chosen = others[large ? 1 : 0]!.name
+        if (large !== this.large) this.chosen = large ? others[1]!.name : ""
         this.large = large
         this.choose(this.chosen)
     }
