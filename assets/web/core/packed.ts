@@ -15,13 +15,14 @@ export interface Packed {
     cut: boolean
 }
 
-/** Answers, as item, attempt, time, place of the versions among all, and the rest. */
-type Row = [item: string, attempt: number, time: number, version: number, rest: object]
+/** Answers, as item, time after the first one, and the rest: `v` is the place of its versions among all, if not the first. */
+type Row = [item: string, time: number, rest: { v?: number } & Partial<Given>]
+interface Rows { since: number; versions: unknown[][]; rows: Row[] }
 type Curve = [begin: number, end: number, low: number, high: number, letters: string]
 const LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_"
 const FINE = LETTERS.length ** 2 - 1 // parts of the length and of the height of a curve, of two letters
 const SIZES: Size[] = [
-    ...[Infinity, 80, 40, 20, 10].map(points => ({ points, letters: Infinity })),
+    ...[Infinity, 80, 40, 20, 16, 13, 10].map(points => ({ points, letters: Infinity })),
     ...Array.from({ length: 47 }, (_, i) => ({ points: 10, letters: 980 - 20 * i })),
 ]
 
@@ -37,10 +38,10 @@ export function packed(kept: unknown, room: number): Packed | null {
 /** The packed notes; undefined if the text is not one of ours. */
 export function unpacked(text: string): unknown {
     try {
-        return JSON.parse(text, (_, own: { curve?: unknown; versions?: unknown; rows?: unknown } | null): unknown => {
-            const { curve, versions, rows, ...rest } = { ...own }
+        return JSON.parse(text, (_, own: { curve?: unknown } | null): unknown => {
+            const { curve, ...rest } = { ...own }
             if (isCurve(curve)) return { ...rest, ...drawn(curve) }
-            return isRows(rows) && Array.isArray(versions) ? givenOf(rows, versions as unknown[][]) : own
+            return isRows(rest) ? givenOf(rest) : own
         })
     } catch {
         return undefined
@@ -55,17 +56,20 @@ function reduced(own: unknown, size: Size): unknown {
     return { ...rest, curve: curveOf(times, values, size.points) }
 }
 
-function rowsOf(given: Given[]): { versions: unknown[][]; rows: Row[] } {
+function rowsOf(given: Given[]): Rows {
+    const since = given[0]!.time ?? 0
     const versions = [...new Set(given.map(({ lesson, product }) => JSON.stringify([lesson ?? null, product ?? null])))]
-    const rows = given.map(({ item, attempt = 1, time = 0, lesson, product, ...rest }): Row =>
-        [item, attempt, time, versions.indexOf(JSON.stringify([lesson ?? null, product ?? null])), rest])
-    return { versions: versions.map(each => JSON.parse(each) as unknown[]), rows }
+    const rows = given.map(({ item, attempt = 1, time = 0, lesson, product, ...rest }): Row => {
+        const v = versions.indexOf(JSON.stringify([lesson ?? null, product ?? null]))
+        return [item, thousandths(time - since), { ...(attempt > 1 ? { attempt } : {}), ...(v ? { v } : {}), ...rest }]
+    })
+    return { since, versions: versions.map(each => JSON.parse(each) as unknown[]), rows }
 }
 
-function givenOf(rows: Row[], versions: unknown[][]): object[] {
-    return rows.map(([item, attempt, time, version, rest]) => {
-        const [lesson, product] = versions[version] ?? []
-        return { item, attempt, time, ...rest, ...(lesson === null ? {} : { lesson }), ...(product === null ? {} : { product }) }
+function givenOf({ since, versions, rows }: Rows): object[] {
+    return rows.map(([item, time, { v = 0, ...rest }]) => {
+        const [lesson, product] = versions[v] ?? []
+        return { item, attempt: 1, time: thousandths(since + time), ...rest, ...(lesson === null ? {} : { lesson }), ...(product === null ? {} : { product }) }
     })
 }
 
@@ -130,8 +134,14 @@ function isGiven(own: unknown): own is Given {
     return typeof own === "object" && own !== null && "item" in own && typeof own.item === "string"
 }
 
-function isRows(own: unknown): own is Row[] {
-    return Array.isArray(own) && own.every(row => Array.isArray(row) && row.length === 5 && typeof row[0] === "string" && typeof row[3] === "number")
+function thousandths(time: number): number {
+    return Math.round(1000 * time) / 1000
+}
+
+function isRows(own: Partial<Rows>): own is Rows {
+    const { since, versions, rows } = own
+    return typeof since === "number" && Array.isArray(versions) && Array.isArray(rows) &&
+        rows.every(row => Array.isArray(row) && row.length === 3 && typeof row[0] === "string" && typeof row[2] === "object")
 }
 
 function isCurve(own: unknown): own is Curve {
