@@ -5,6 +5,7 @@ import type { FormMessage } from "../core/form_data"
 import { phrase, type Texts } from "../core/words"
 import { ServerEngine } from "../channel/channel"
 import type { Command, PageMessage } from "../channel/messages"
+import { Awake } from "../parts/awake"
 import { ClassPanel } from "../parts/class_panel"
 import type { FormHost } from "../parts/fields"
 import { Form } from "../parts/form"
@@ -18,7 +19,7 @@ class Remote {
     private panel: ClassPanel | null = null
     private form: Form | null = null
     private readonly host: FormHost
-    private awake: WakeLockSentinel | null = null
+    private readonly awake = new Awake()
 
     constructor(private readonly engine: ServerEngine, private readonly texts: Texts) {
         const { settings } = engine
@@ -62,18 +63,8 @@ class Remote {
         this.panel!.show(data, false)
     }
 
-    /** Keep the phone awake while a vote is open; browsers allow it only on encrypted pages. */
-    private async wake(): Promise<void> {
-        const wanted = Boolean(this.engine.remote?.votes) && document.visibilityState === "visible"
-        if (!("wakeLock" in navigator) || wanted === Boolean(this.awake && !this.awake.released)) return
-        const before = this.awake
-        this.awake = null
-        await before?.release()
-        if (!wanted) return
-        try {
-            this.awake = await navigator.wakeLock.request("screen")
-        } catch {} // the phone saves its battery
-    }
+    /** Keep the phone awake while a vote is open. */
+    private readonly wake = () => this.awake.keep(Boolean(this.engine.remote?.votes) && document.visibilityState === "visible")
 }
 
 const engine = new ServerEngine(() => ({ dark: false, plain: true, upright: true }), "remote")
