@@ -16,6 +16,6 @@ def is_right(block: Block, given: Given) -> bool | None:
     if isinstance(block, Derivation):
         return all(state.good for state in judged(block, given.text))
     option = None if given.answer is None else given.answer.option
-    if not isinstance(block, Choice | Quiz) or option not in range(len(block.options)):
+    if not isinstance(block, Choice | Quiz) or option is None:
         return None
-    return block.options[option].right
+    return block.options[option].right if option < len(block.options) else None

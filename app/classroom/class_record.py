@@ -176,8 +176,9 @@ def _answers(lesson: Lesson, notes: Notes, votes: Sequence[Vote]) -> Iterator[Ro
                 }
                 if not task.exploratory:
                     row["right"] = int(given is not None)
-                has_value = task.best and given is not None and given.number is not None
-                yield {**row, **({"value": given.number} if has_value else {})}
+                if task.best and given is not None and given.number is not None:
+                    row["value"] = given.number
+                yield row
         yield from _questions(lesson, index, notes, votes)
 
 

@@ -205,7 +205,7 @@ def pieces(run: LessonRun, words: Words) -> Iterator[str]:
 
 def answered(step: Step, run: LessonRun) -> Iterator[Notes]:
     """Notes in which the step's questions are not answered, and in which they are."""
-    notes, answers = run.notes, dict[str, dict[str, Any]](quiz={}, numbers={}, written={})
+    notes, answers = run.notes, dict[str, Any](quiz={}, numbers={}, written={})
     yield notes
     for place, block in enumerate(step.blocks):
         key = f"{run.index}.{place}"
