@@ -19,7 +19,6 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
@@ -27,6 +26,7 @@ from onpath.models.paths.curve_fit import APART, DENSE, apart, check_length
 from onpath.models.paths.curves import PERIOD
 from onpath.models.paths.path_checks import LEAST_RADIUS
 from onpath.models.paths.spline_curves import DEGREE, MOST_PIECES, SplineCurve, grained
+from onpath.models.paths.stroke_order import Duration, Places, ordered
 
 ROUNDINGS = ((2e-4, 1.0), (3e-4, 1.1), (4e-4, 1.2), (5e-4, 1.35), (6e-4, 1.5), (8e-4, 2.0))
 """Width of the smoothing, [m], and factor of the caps' radius; the later ones if bends need it."""
@@ -50,7 +50,8 @@ DENSITY = 12  # points on each piece
 STIFFNESS = 1e-7  # w, for each point of a piece
 TREMOR = 1.5e-3  # [m], width of the smoothing of a line drawn by hand
 DECIMALS = 4  # of the duration, [s], and of the ends of links, [rad]
-LINK_RADIUS = 2e-3  # [m], least one of a link's arcs
+LINK_RADII = (1.5e-3, 3e-3)  # [m], of a link's arcs, and a larger one in large drawings
+_SENSES = np.array([[1, 1, -1, -1], [1, -1, 1, -1]])  # of both arcs of a link: 1 turns left
 MOST_RAISED = 0.3  # share of the time that the pen may be up in a drawing that is repeated
 
 
@@ -72,7 +73,13 @@ class Line:
 def spline_through(
     strokes: Sequence[Array], closed: bool = False, repeated: bool = False
 ) -> SplineCurve:
-    """The path along strokes in their order; between them the pen is raised.
+    """The path along strokes; between them the pen is raised.
+
+    They are drawn in their order and direction, unless the pen would then be up for more than
+    `MOST_RAISED` of the time; then in those of `ordered`. That does not suffice for short strokes:
+    a link takes about 0.1 s, since the tangent turns by at most `SWING`. In 120 random drawings
+    of 120 mm, links took 28 % with strokes of 80 mm and more on average, 31 % with 60 to 80 mm, and
+    41 % with 30 to 45 mm, instead of 50, 53 and 61 % in the order of the file.
 
     It is rounded as little as is needed for bends of `LEAST_RADIUS`. Its control points are
     multiples of `GRAIN`, and its times have `DECIMALS`, so that it can be told in whole numbers.
@@ -90,11 +97,24 @@ def spline_through(
     """
     closed = closed and len(strokes) == 1
     lines = _cleaned(strokes, closed)
-    if repeated and not closed:
-        found = _through(lines, closed, returns=True)
+    ways = [False] if closed or not repeated else [True, False]
+    for returns in ways:
+        found = _in_order(lines, closed, returns)
+        if raised_share(found) <= MOST_RAISED:
+            break
+    return found
+
+
+def _in_order(lines: list[Array], closed: bool, returns: bool) -> SplineCurve:
+    """The path along lines in their order, or in a quicker one; see `spline_through`."""
+    size = float(np.ptp(np.vstack(lines), axis=0).max())
+    line = _joined([_even(each)[0] for each in lines], closed, returns, size)
+    steps = np.diff(_times(line, _bends(line)))
+    if steps[~line.pen[1:]].sum() <= MOST_RAISED * steps.sum():  # about; the fit tells exactly
+        found = _through(lines, closed, returns)
         if raised_share(found) <= MOST_RAISED:
             return found
-    return _through(lines, closed)
+    return _through(ordered(lines, returns, _quickest(size)), closed, returns)
 
 
 def raised_share(curve: SplineCurve) -> float:
@@ -263,40 +283,88 @@ def _joined(strokes: list[Array], closed: bool, returns: bool, size: float) -> L
 def _link(before: Array, after: Array, size: float) -> Array:
     """Points from the end of one line to the beginning of another one, without those two.
 
-    It is the shortest way that leaves and arrives along the lines, of two arcs of a circle and the
-    straight line between them.
+    It is the quickest way that leaves and arrives along the lines, of two arcs of equal radius and
+    the straight line between them.
 
     Source: L. E. Dubins, American Journal of Mathematics 79 (1957).
     """
-    radius = max(LINK_RADIUS, 0.04 * size)
-    a, b = complex(*before[-1]), complex(*after[0])
+    a, b = np.array(complex(*before[-1])), np.array(complex(*after[0]))
     leaving, arriving = _direction(before[-4:]), _direction(after[:4])
-    ways = list[tuple[float, NDArray[np.complex128]]]()
-    for first in (1, -1):
-        for last in (1, -1):
-            c, d = a + 1j * first * radius * leaving, b + 1j * last * radius * arriving
-            squared = abs(d - c) ** 2 - (radius * (last - first)) ** 2
-            if squared < 0 or d == c:
-                continue
-            straight = float(squared) ** 0.5
-            along = (d - c) / (straight + 1j * radius * (last - first))
-            along /= abs(along)
-            begin = float(first * np.angle(along / leaving)) % PERIOD
-            end = float(last * np.angle(arriving / along)) % PERIOD
-            turn = np.arange(0.0, begin, STEP / radius)
-            back = np.arange(0.0, end, STEP / radius)
-            parts = (
-                c - 1j * first * radius * leaving * np.exp(1j * first * turn),
-                c - 1j * first * radius * along + along * np.arange(0.0, straight, STEP),
-                d - 1j * last * radius * along * np.exp(1j * last * back),
-            )
-            ways.append((straight + radius * (begin + end), np.concatenate(parts)[1:]))
-    points = min(ways, key=lambda way: way[0])[1]
+    ways = [
+        (float(time), radius, way, turns[:, way], straights[way], alongs[way])
+        for radius in _link_radii(size)
+        for turns, straights, alongs in [_arcs(a, leaving, b, arriving, radius)]
+        for way, time in enumerate(_link_times(turns, straights, radius))
+    ]
+    _, radius, way, (begin, end), straight, along = min(ways, key=lambda each: each[0])
+    first, last = _SENSES[:, way]
+    c, d = a + 1j * first * radius * leaving, b + 1j * last * radius * arriving
+    turn = np.arange(0.0, begin, STEP / radius)
+    back = np.arange(0.0, end, STEP / radius)
+    parts = (
+        c - 1j * first * radius * leaving * np.exp(1j * first * turn),
+        c - 1j * first * radius * along + along * np.arange(0.0, straight, STEP),
+        d - 1j * last * radius * along * np.exp(1j * last * back),
+    )
+    points = np.concatenate(parts)[1:]
     return np.stack([points.real, points.imag], axis=-1)
 
 
-def _direction(points: Array) -> complex:
-    along = complex(*(points[-1] - points[0]))
+def _link_radii(size: float) -> tuple[float, ...]:
+    """Of the arcs of a link; a small one turns back to a near stroke without a loop."""
+    return *LINK_RADII, max(LINK_RADII[-1], 0.04 * size)
+
+
+def _arcs(
+    a: Places, leaving: Places, b: Places, arriving: Places, radius: float
+) -> tuple[Array, Array, Places]:
+    """The links from a to b, by the senses of their arcs, see `_SENSES`.
+
+    Args:
+        a, leaving, b, arriving: both places [m] and the directions there, of equal shapes.
+        radius: of the arcs, [m].
+
+    Returns:
+        The angles of both arcs, (2, 4, ...), [rad]; the lengths of the straight lines between
+        them, (4, ...), [m], infinite where there is no such link; and their directions, (4, ...).
+    """
+    first, last = _SENSES.reshape(2, 4, *(1,) * a.ndim)
+    between = b + 1j * last * radius * arriving - a - 1j * first * radius * leaving
+    apart = radius * (last - first)
+    squared = np.abs(between) ** 2 - apart**2
+    possible = (squared >= 0) & (between != 0)
+    straight: Array = np.sqrt(np.where(possible, squared, 0.0))
+    along = np.where(possible, between, 1.0) / np.where(possible, straight + 1j * apart, 1.0)
+    along /= np.abs(along)
+    begin = first * np.angle(along / leaving) % PERIOD
+    end = last * np.angle(arriving / along) % PERIOD
+    return np.stack([begin, end]), np.where(possible, straight, np.inf), along
+
+
+def _link_times(turns: Array, straights: Array, radius: float) -> Array:
+    """About the times of links, as in `_times`, (4, ...), [s]; see `_arcs`."""
+    gain, most = TURNING * HASTE**2, HASTE * QUICK
+    slow = min(SWING * radius, HASTE * (TURNING * radius) ** 0.5, most)
+    fast = np.minimum(np.sqrt(slow**2 + gain * straights), most)
+    even = straights - (fast**2 - slow**2) / gain
+    return turns.sum(axis=0) * radius / slow + 2 * (fast - slow) / gain + even / fast
+
+
+def _quickest(size: float) -> Duration:
+    """The time of the quickest link between places of a drawing of a size, for `ordered`."""
+
+    def duration(a: Places, leaving: Places, b: Places, arriving: Places) -> Array:
+        times = [
+            _link_times(*_arcs(a, leaving, b, arriving, radius)[:2], radius).min(axis=0)
+            for radius in _link_radii(size)
+        ]
+        return np.min(times, axis=0)
+
+    return duration
+
+
+def _direction(points: Array) -> Places:
+    along = np.array(complex(*(points[-1] - points[0])))
     return along / abs(along)
 
 
