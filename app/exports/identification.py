@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from onpath.lessons.words import ENGLISH, Words
 from onpath.models.studies.linear_model import BaseParameter
 from onpath.models.studies.log_identification import FileEstimate
 
+DRY = re.compile(r"c\d+")  # the dry friction of a motor
 MUCH = 0.1  # unexplained share of the torque above which the table warns
 
 
@@ -40,16 +42,19 @@ def identification_data(found: FileEstimate) -> dict[str, Any]:
 
 
 def _entry(each: BaseParameter) -> dict[str, Any]:
+    interval = _interval(each)
     return {
         "name": each.name,
         "plus": {name: float(f"{share:.6g}") for name, share in each.others},
         "value": float(f"{each.value:.9g}"),
-        "standard_error": float(f"{each.error:.3g}"),
-        "interval": _interval(each),
+        "standard_error": None if interval is None else float(f"{each.error:.3g}"),
+        "interval": interval,
     }
 
 
-def _interval(each: BaseParameter) -> list[float]:
+def _interval(each: BaseParameter) -> list[float] | None:
+    if not np.isfinite(each.high):
+        return None
     return [float(f"{end:.6g}") for end in (each.low, each.high)]
 
 
@@ -62,15 +67,16 @@ def identification_text(found: FileEstimate) -> str:
 
 def parameter_rows(found: FileEstimate) -> list[tuple[str, str, str]]:
     """Name, value and half of the interval of each parameter, and of the torques' delay."""
-    rows = [
-        (each.label(), f"{each.value:.6g}", f"{each.high - each.value:.2g}")
-        for each in found.estimate.found
-    ]
+    rows = [(each.label(), f"{each.value:.6g}", _half(each)) for each in found.estimate.found]
     late = found.estimate.delay
     if late is not None:
-        half = f"{1e3 * (late.high - late.value):.2g}"
-        rows.append(("torques logged late by", f"{1e3 * late.value:.3g} ms", half))
+        rows.append(("torques logged late by", f"{1e3 * late.value:.3g} ms", _half(late, 1e3)))
     return rows
+
+
+def _half(each: BaseParameter, scale: float = 1.0) -> str:
+    half = scale * (each.high - each.value)
+    return f"{half:.2g}" if np.isfinite(half) else "?"
 
 
 def remarks(found: FileEstimate) -> list[str]:
@@ -85,6 +91,8 @@ def remarks(found: FileEstimate) -> list[str]:
         )
     if any(each.others for each in result.found):
         lines.append("the motion cannot distinguish the parameters of a sum")
+    if not all(np.isfinite(each.high) for each in result.found):
+        lines.append("? instead of an interval: the robot moves for too short a time for one")
     if result.unexcited:
         lines.append(f"not excited: {', '.join(result.unexcited)}")
     if found.motion:
@@ -98,13 +106,17 @@ def remarks(found: FileEstimate) -> list[str]:
         "The true value is within ± with a probability of 95 %, judging by what is not"
         " explained. That leaves out errors that all rows share: wrong geometry, wrong scales of"
         " torques and forces, forces that are not in the file, and terms that the model lacks."
-        " Where dry friction switches with the direction of motion, ± is too small."
+        " Of friction where motors are slow or turn round, nothing is assumed."
     )
-    if result.unexplained > MUCH:
-        lines.append(
-            f"this is too much for the values above to be trusted: is the robot"
-            f" {found.robot}, and does every column have the unit in which it is read?"
-        )
+    dry = [each for each in result.found if DRY.fullmatch(each.label())]
+    negative = [each.name for each in dry if each.high < 0]
+    doubts = ["too much of the torque is not explained"] if result.unexplained > MUCH else []
+    doubts += [f"dry friction is never negative, but {' and '.join(negative)}"] if negative else []
+    lines += [
+        f"the values above cannot be trusted, since {each}: is the robot"
+        f" {found.robot}, and does every column have the unit in which it is read?"
+        for each in doubts
+    ]
     return lines
 
 

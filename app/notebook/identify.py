@@ -36,8 +36,8 @@ class IdentificationResult:
     def intervals(self) -> dict[str, tuple[float, float]]:
         """Intervals that contain the true values with a probability of 95 %.
 
-        This holds for logs with the dry friction that the estimate assumes, which passes smoothly
-        through standstill. If friction switches with the direction of motion, they are too narrow.
+        Of friction where motors are slow or turn round, nothing is assumed. They are infinite if
+        the robot moves for too short a time.
         """
         return {each.label(): (each.low, each.high) for each in self.found.estimate.found}
 

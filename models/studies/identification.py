@@ -234,6 +234,23 @@ def standard_errors(regressor: Array, residual: Array) -> Array:
     return np.sqrt(np.maximum(np.diag(inverse @ middle @ inverse), 0.0) * freedom)
 
 
+def step_means(ends: Array, values: Array, edges: Array) -> Array:
+    """Means over other steps of a signal whose means over steps are known, (k, columns).
+
+    They are the differences of a cubic spline through the integral of the signal.
+
+    Args:
+        ends: ends of the steps, shape (rows + 1,).
+        values: means, shape (rows, columns).
+        edges: ends of the other steps, shape (k + 1,).
+    """
+    from scipy.interpolate import CubicSpline  # slow to import
+
+    parts = np.cumsum(values * np.diff(ends)[:, None], axis=0)
+    whole = CubicSpline(ends, np.concatenate([np.zeros((1, values.shape[1])), parts]))(edges)
+    return np.asarray(np.diff(whole, axis=0) / np.diff(edges)[:, None], dtype=float)
+
+
 def _equations(record: JointRecord) -> tuple[Array, Array]:
     """Regressor, shape (k, 2, len(ALL)), and right-hand side, shape (k, 2), for k window positions.
 

@@ -6,6 +6,9 @@ window w of finite length and integrated by parts, so that no acceleration is ne
 
     (-<w', P> + <w, R>) π = <w, B u + J_h^T F> + <w', p_0> - <w, r_0>,   <w, x> = ∫ w(t) x(t) dt.
 
+Dry friction is c sign(r) with the rate r of a motor; where that is slow, nothing is assumed of it
+(see slow_friction.py).
+
 Columns of the regressor that depend on others belong to parameters that the record cannot
 distinguish. A QR decomposition with column pivoting chooses independent columns. For each of them,
 the sum of its parameter and a combination of the others, a base parameter, is estimated.
@@ -15,6 +18,7 @@ Source: Khalil and Dombre, Modeling, Identification and Control of Robots, 12.3 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -29,17 +33,23 @@ from onpath.models.studies.identification import (
     ENOUGH,
     EXACT,
     FEWEST,
+    LAGS,
     LEAST_MOTION,
     OVERLAP,
     SHORTEST,
     WORST_CONDITION,
     bump,
     least_squares,
-    standard_errors,
+    step_means,
 )
-from onpath.models.systems.forces import DRY_VELOCITY
+from onpath.models.studies.slow_friction import SlowFriction, slow_friction, slow_rows
 from onpath.models.systems.system import MechanicalSystem
 
+INDEPENDENT = 2.5  # windows that tell as much of white noise as one without overlap
+FEWEST_FREE = 3.0  # degrees of freedom, with fewer of which there is no interval
+SLOW, SLOW_SHARE = 0.2, 0.25  # [rad/s] or [m/s], and share of a motor's largest rate
+TURNED = 0.02  # [rad/s] or [m/s], width of the smooth sign of dry friction
+HARDLY = 1e-3  # rms of a column without slow friction, relative to before, that counts as zero
 UNMOVED = 1e-9  # rms of a column, relative to the largest, below which it counts as zero
 LATEST = 0.1  # [s], largest delay or lead of logged torques
 DELAY = "delay"  # name of the delay among the estimates
@@ -75,8 +85,8 @@ class BaseParameter:
         name: of the parameter.
         value: estimate.
         error: its standard error.
-        low, high: interval that contains the true value with a probability of 95 %, if dry friction
-            passes smoothly through standstill as in `forces.dry_friction`; else it is too narrow.
+        low, high: interval that contains the true value with a probability of 95 %, whatever the
+            friction of slow motors; infinite if the record is too short for one.
         others: (name, multiple) of each further parameter of the sum.
     """
 
@@ -103,7 +113,8 @@ class Estimate:
         unexplained: rms of the filtered torque that the model does not explain, as a share.
         delay: by which the logged torques are late, [s]; None if the motion does not show it.
         times: middle of each window, from the beginning of its record, shape (windows,), [s].
-        torque: filtered torque of each coordinate, shape (windows, n).
+        torque: filtered torque of each coordinate, shape (windows, n), without what any friction of
+            slow motors would explain.
         residual: the part of it that the model does not explain, shape (windows, n).
     """
 
@@ -182,7 +193,8 @@ def estimate(system: MechanicalSystem, records: list[MotionRecord], geometry: Ar
     dry = _solved(names, parts, late)
     if any(record.measured for record in records):
         return dry
-    smooth = _solved(names[: len(model.names)], parts, late)
+    without = [replace(part, slow=None) for part in parts]  # there is no friction to stick
+    smooth = _solved(names[: len(model.names)], without, late)
     return smooth if smooth.unexplained <= max(ENOUGH * dry.unexplained, EXACT) else dry
 
 
@@ -205,9 +217,10 @@ def unexplained_of(
     names = (*model.names, *(f"c{i + 1}" for i in range(system.m)))
     known = {each.name: each.value for each in found.found}
     values = np.array([known.get(name, 0.0) for name in names])
-    columns, torque = _together(parts, 0.0 if found.delay is None else found.delay.value)
-    total, left = (np.sqrt(np.mean(each**2)) for each in (torque, torque - columns @ values))
-    return float(left / total) if total else 0.0
+    late = 0.0 if found.delay is None else found.delay.value
+    torque = _torque(parts, late)
+    left = _without_slow(parts, torque - _columns(parts) @ values)
+    return _share(left, _without_slow(parts, torque))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -220,7 +233,8 @@ class _Equations:
         known: what the right-hand side has besides the motors' torques, (windows, n).
         motors: column of B for each motor, (rows, n, m).
         u: logged torques, (rows, m).
-        starts: first row of each window.
+        starts: first row of each window. All torques are known there, however late they are.
+        slow: the unknown friction of slow motors, or None if there is none.
     """
 
     dt: float
@@ -229,33 +243,32 @@ class _Equations:
     motors: Array
     u: Array
     starts: NDArray[np.int_]
+    slow: SlowFriction | None
 
     def torque(self, late: float) -> Array:
         """Right-hand side if the torques were logged `late` seconds after they acted."""
-        rows = len(self.u)
-        edges = np.arange(rows + 1.0)
-        whole = np.concatenate([np.zeros((1, self.u.shape[1])), np.cumsum(self.u, axis=0)])
-        sums: list[Array] = [np.interp(edges + late / self.dt, edges, each) for each in whole.T]
-        moved = np.diff(np.stack(sums, axis=1), axis=0)
+        edges = np.arange(len(self.u) + 1.0)
+        moved = step_means(edges, self.u, edges + late / self.dt)
         held = bump(self.dt)[3]
-        return _filtered(np.einsum("rnm,rm->rn", self.motors, moved), held, self.dt) + self.known
+        acting = _filtered(np.einsum("rnm,rm->rn", self.motors, moved), held, self.dt)
+        return acting[self.starts // _stride(self.dt)] + self.known
 
     def middles(self) -> Array:
         """Middle of each window, from the beginning of the record, [s]."""
         half = len(bump(self.dt)[3]) / 2
         return np.asarray(self.dt * (self.starts + half), dtype=float)
 
-    def known_at(self, late: float) -> NDArray[np.bool_]:
-        """Windows for which all torques are known with this delay."""
-        rows, length, away = len(self.u), len(bump(self.dt)[3]), late / self.dt
-        return (self.starts + away >= 0) & (self.starts + length + away <= rows)
-
 
 def _filtered(signal: Array, kernel: Array, dt: float) -> Array:
     """<kernel, signal> for all windows, whose first axis replaces that of the rows."""
-    weight, _, _, held = bump(dt)
-    windows = sliding_window_view(signal, len(weight), axis=0)[:: len(held) // OVERLAP]
+    weight = bump(dt)[0]
+    windows = sliding_window_view(signal, len(weight), axis=0)[:: _stride(dt)]
     return np.asarray(windows[..., : len(kernel)] @ kernel, dtype=float)
+
+
+def _stride(dt: float) -> int:
+    """Rows from one window to the next."""
+    return len(bump(dt)[3]) // OVERLAP
 
 
 def _equations(
@@ -277,10 +290,22 @@ def _equations(
     known += _filtered(offsets[..., 0], rate, dt) - _filtered(offsets[..., 1], weight, dt)
     motors = np.stack([effort(np.tile(u[:, None], rows), none) for u in np.eye(system.m)], axis=2)
     rates = np.einsum("rnm,rn->rm", motors, record.v)
-    dry = motors * (rates / np.sqrt(rates**2 + DRY_VELOCITY**2))[:, None]
-    starts = np.arange(0, rows - len(weight) + 1, len(held) // OVERLAP)
+    dry = motors * (rates / np.sqrt(rates**2 + TURNED**2))[:, None]
     columns = np.concatenate([columns, _filtered(dry, held, dt)], axis=2)
-    return _Equations(dt=dt, columns=columns, known=known, motors=motors, u=record.u, starts=starts)
+    starts = np.arange(len(columns)) * _stride(dt)
+    reach = (LATEST + BUMP / FEWEST) / dt
+    kept = (starts >= reach) & (starts + len(held) + reach <= rows)
+    bounds = np.minimum(SLOW, SLOW_SHARE * np.abs(rates).max(axis=0))
+    slow = slow_rows(rates, bounds, dt)
+    return _Equations(
+        dt=dt,
+        columns=columns[kept],
+        known=known[kept],
+        motors=motors,
+        u=record.u,
+        starts=starts[kept],
+        slow=slow_friction(motors, slow, dt, starts[kept], held),
+    )
 
 
 def _check(record: MotionRecord) -> None:
@@ -293,31 +318,47 @@ def _check(record: MotionRecord) -> None:
         raise ValueError("the robot hardly moves")
 
 
-def _together(parts: list[_Equations], late: float) -> tuple[Array, Array]:
-    """Regressor (windows, n, k + m) and right-hand side (windows, n) of all records."""
-    kept = [part.known_at(late) for part in parts]
-    columns = [part.columns[keep] for part, keep in zip(parts, kept, strict=True)]
-    torques = [part.torque(late)[keep] for part, keep in zip(parts, kept, strict=True)]
-    return np.concatenate(columns), np.concatenate(torques)
+def _columns(parts: list[_Equations]) -> Array:
+    """Regressor of all records, (windows, n, k + m)."""
+    return np.concatenate([part.columns for part in parts])
+
+
+def _torque(parts: list[_Equations], late: float) -> Array:
+    """Right-hand side of all records, (windows, n)."""
+    return np.concatenate([part.torque(late) for part in parts])
+
+
+def _without_slow(parts: list[_Equations], values: Array) -> Array:
+    """Values of all records, (windows, n, ...), without what friction of slow motors explains."""
+    each = np.split(values, np.cumsum([len(part.starts) for part in parts])[:-1])
+    return np.concatenate(
+        [part.slow.removed(x) if part.slow else x for part, x in zip(parts, each, strict=True)]
+    )
+
+
+def _share(left: Array, torque: Array) -> float:
+    """Ratio of their rms; 0 without torques."""
+    total = float(np.sqrt(np.mean(torque**2)))
+    return float(np.sqrt(np.mean(left**2))) / total if total else 0.0
 
 
 def _delay(parts: list[_Equations]) -> float:
     """The delay of the logged torques with which the model explains most of them, [s]."""
     from scipy.optimize import minimize_scalar  # slow to import
 
+    _, scaled, _ = _scaled(parts, range(parts[0].columns.shape[2]))
+    basis = np.linalg.qr(scaled.reshape(-1, scaled.shape[-1]))[0]
+
     def unexplained(late: float) -> float:
-        columns, torque = _together(parts, late)
-        moved, scaled = _scaled(columns)
-        residual = torque - scaled @ least_squares(scaled, torque)[0] if moved else torque
-        total = float(np.mean(torque**2))
-        return float(np.mean(residual**2)) / total if total else 0.0
+        torque = _without_slow(parts, _torque(parts, late)).ravel()
+        return _share(torque - basis @ (basis.T @ torque), torque)
 
     steps = np.linspace(-LATEST, LATEST, 21)
     best = float(min(steps, key=unexplained))
     away = float(steps[1] - steps[0])
     found = minimize_scalar(
         unexplained,
-        bounds=(best - away, best + away),
+        bounds=(max(best - away, -LATEST), min(best + away, LATEST)),
         method="bounded",
         options={"xatol": 1e-6},
     )
@@ -336,8 +377,8 @@ def dependent_names(
     model = linear_model(system)
     known = (*model.names, *(f"c{i + 1}" for i in range(system.m)))
     used = [i for i, name in enumerate(known) if name in names]
-    columns, _ = _together([_equations(system, model, r, geometry) for r in records], 0.0)
-    moved, scaled = _scaled(columns[..., used])
+    parts = [_equations(system, model, record, geometry) for record in records]
+    moved, scaled, _ = _scaled(parts, used)
     chosen, others, shares = _independent(scaled.reshape(-1, len(moved)))
     mixed = {moved[j] for j in others}
     mixed |= {moved[i] for i, row in zip(chosen, shares, strict=True) if _significant(row)}
@@ -348,28 +389,44 @@ def _significant(shares: Array) -> bool:
     return bool(np.any(np.abs(shares) > NEGLIGIBLE))
 
 
-def _scaled(columns: Array) -> tuple[list[int], Array]:
-    """The columns that are not zero, and these with an rms of 1."""
-    size = np.sqrt(np.mean(columns**2, axis=(0, 1)))
-    moved = np.flatnonzero(size > UNMOVED * size.max(initial=0.0)).tolist()
-    return moved, columns[..., moved] / size[moved]
+def _scaled(parts: list[_Equations], used: Sequence[int]) -> tuple[list[int], Array, Array]:
+    """The columns that tell something where motors are not slow.
+
+    Args:
+        used: the columns to take.
+
+    Returns:
+        Their places in `used`, these columns without what slow friction explains, with an rms of 1,
+        and the rms that they had.
+    """
+    whole = _columns(parts)[..., used]
+    columns = _without_slow(parts, whole)
+    before, size = (np.sqrt(np.mean(each**2, axis=(0, 1))) for each in (whole, columns))
+    told = (before > UNMOVED * before.max(initial=0.0)) & (size > HARDLY * before)
+    moved = np.flatnonzero(told).tolist()
+    return moved, columns[..., moved] / size[moved], size[moved]
 
 
 def _solved(names: tuple[str, ...], parts: list[_Equations], late: float) -> Estimate:
     """Estimates of the base parameters and the delay, with the first columns of the regressor."""
-    columns, torque = _together(parts, late)
+    moved, scaled, scale = _scaled(parts, range(len(names)))
+    if not moved:
+        raise ValueError("the robot hardly moves")
     change = _change(parts, late)
-    moved, scaled = _scaled(columns[..., : len(names)])
-    if late and _depends(change, scaled):
-        return replace(_solved(names, parts, 0.0), delay=None)
-    scale = np.sqrt(np.mean(columns**2, axis=(0, 1)))[moved]
+    shows = not _depends(change, scaled)
+    if late and not shows:
+        return _solved(names, parts, 0.0)
+    torque = _without_slow(parts, _torque(parts, late))
     chosen, others, shares = _independent(scaled.reshape(-1, len(moved)))
     jerk = float(np.sqrt(np.mean(change**2))) or 1.0
-    regressor = np.concatenate([scaled[..., chosen], -change[..., None] / jerk], axis=2)
+    regressor = scaled[..., chosen]
+    if shows:
+        regressor = np.concatenate([regressor, -change[..., None] / jerk], axis=2)
     values, _ = least_squares(regressor, torque)
     residual = np.asarray(torque - regressor @ values, dtype=float)
-    errors = standard_errors(regressor, residual)
-    wide = errors * _quantile(regressor)
+    unknown = sum(part.slow.torques for part in parts if part.slow)
+    errors = _errors(regressor, residual, unknown)
+    wide = errors * _quantile(regressor, unknown)
 
     def parameter(i: int, name: str, size: float, sums: Sums = (), shift: float = 0.0):
         value = float(values[i]) / size + shift
@@ -384,13 +441,12 @@ def _solved(names: tuple[str, ...], parts: list[_Equations], late: float) -> Est
             if abs(share) > NEGLIGIBLE
         )
         found.append((moved[place], parameter(i, names[moved[place]], scale[place], sums)))
-    total, left = (float(np.sqrt(np.mean(each**2))) for each in (torque, residual))
     return Estimate(
         found=tuple(each for _, each in sorted(found, key=lambda pair: pair[0])),
         unexcited=tuple(name for j, name in enumerate(names) if j not in moved),
-        unexplained=left / total if total else 0.0,
-        delay=parameter(len(chosen), DELAY, jerk, shift=late),
-        times=np.concatenate([part.middles()[part.known_at(late)] for part in parts]),
+        unexplained=_share(residual, torque),
+        delay=parameter(len(chosen), DELAY, jerk, shift=late) if shows else None,
+        times=np.concatenate([part.middles() for part in parts]),
         torque=torque,
         residual=residual,
     )
@@ -398,12 +454,9 @@ def _solved(names: tuple[str, ...], parts: list[_Equations], late: float) -> Est
 
 def _change(parts: list[_Equations], late: float) -> Array:
     """Derivative of the right-hand side with respect to the delay, shape (windows, n), [N m/s]."""
-    changes = list[Array]()
-    for part in parts:
-        step, keep = max(part.dt, 1e-3), part.known_at(late)
-        after, before = part.torque(late + step), part.torque(late - step)
-        changes.append((after - before)[keep] / (2 * step))
-    return np.concatenate(changes)
+    step = max(*(part.dt for part in parts), 1e-3)
+    after, before = _torque(parts, late + step), _torque(parts, late - step)
+    return _without_slow(parts, (after - before) / (2 * step))
 
 
 def _depends(change: Array, scaled: Array) -> bool:
@@ -413,13 +466,44 @@ def _depends(change: Array, scaled: Array) -> bool:
     return bool(np.linalg.norm(left) <= np.linalg.norm(column) / WORST_CONDITION)
 
 
-def _quantile(regressor: Array) -> float:
-    """Half of a 95 % interval in standard errors: Student's t for windows that do not overlap."""
+def _errors(regressor: Array, residual: Array, removed: int) -> Array:
+    """Standard errors of the least-squares estimates, shape (unknowns,).
+
+    Windows overlap, and friction leaves residuals where motors turn round: they are correlated, and
+    not stationary. The covariance is therefore A⁻¹ S A⁻¹ with A = X^T X and
+
+        S = Σ_l w_l Σ_k s_k s_{k+l}^T,   s_k = X_k^T r_k,   w_l = 1 - |l| / LAGS.
+
+    Source: Newey and West, Econometrica 55, 1987.
+
+    Args:
+        regressor: X, shape (windows, n, unknowns).
+        residual: r, shape (windows, n).
+        removed: torques that were removed from the equations.
+    """
+    flat = regressor.reshape(-1, regressor.shape[-1])
+    inverse = np.linalg.inv(flat.T @ flat)
+    scores = np.einsum("kji,kj->ki", regressor, residual)
+    middle = scores.T @ scores
+    for lag in range(1, min(LAGS, len(scores))):
+        part = (1 - lag / LAGS) * scores[:-lag].T @ scores[lag:]
+        middle += part + part.T
+    lost = residual.size / INDEPENDENT / _freedom(regressor, removed)
+    return np.sqrt(np.maximum(np.diag(inverse @ middle @ inverse), 0.0) * lost)
+
+
+def _freedom(regressor: Array, removed: int) -> float:
+    """Degrees of freedom, at least 1: independent windows, less the unknowns."""
+    windows, coordinates, unknowns = regressor.shape
+    return max((windows * coordinates - removed) / INDEPENDENT - unknowns, 1.0)
+
+
+def _quantile(regressor: Array, removed: int) -> float:
+    """Half of a 95 % interval in standard errors: Student's t, or infinity if there is none."""
     from scipy.stats import t  # slow to import
 
-    windows, coordinates, unknowns = regressor.shape
-    freedom = windows * coordinates / OVERLAP - unknowns
-    return float(t.ppf(0.975, max(freedom, 1.0)))
+    free = _freedom(regressor, removed)
+    return float(t.ppf(0.975, free)) if free >= FEWEST_FREE else np.inf
 
 
 def _independent(regressor: Array) -> tuple[list[int], list[int], Array]:

@@ -19,7 +19,7 @@ from onpath.models.arrays import Array
 from onpath.models.closed_loop.trajectory import header, measured_names
 from onpath.models.errors import CodedError
 from onpath.models.studies.array_file import is_array_file
-from onpath.models.studies.identification import BUMP, FEWEST, smooth_velocities
+from onpath.models.studies.identification import BUMP, FEWEST, smooth_velocities, step_means
 from onpath.models.studies.linear_model import MotionRecord
 from onpath.models.studies.table_file import Table, read_table
 from onpath.models.systems.parameter_specs import unknown_name
@@ -260,10 +260,7 @@ def _interpolated(times: Array, values: Array, grid: Array) -> Array:
 
 
 def _means(times: Array, values: Array, grid: Array) -> Array:
-    """Means over the steps of a grid of values that are constant from row to row."""
+    """Means over the steps of a grid of values that are means from row to row."""
     dt = grid[1] - grid[0]
     ends, edges = np.append(times, times[-1] + dt), np.append(grid, grid[-1] + dt)
-    sums = np.cumsum(values * np.diff(ends)[:, None], axis=0)
-    whole = np.concatenate([np.zeros((1, values.shape[1])), sums])
-    columns: list[Array] = [np.interp(edges, ends, each) for each in whole.T]
-    return np.asarray(np.diff(np.stack(columns, axis=1), axis=0) / dt, dtype=float)
+    return step_means(ends, values, edges)

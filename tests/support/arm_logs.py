@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -14,8 +15,12 @@ from onpath.models.arrays import Array
 from onpath.models.closed_loop.trajectory import Trajectory
 from onpath.models.paths.path_design import presets
 from onpath.models.studies.experiments import experiments, run
+from onpath.models.studies.linear_model import DELAY, Estimate, estimate
+from onpath.models.studies.record_file import log_columns, quantities, read_records
+from onpath.models.systems.catalogue import ROBOTS
 
 DRY = 0.04  # [N m], dry friction of every joint
+STUCK = 0.05  # [rad], range of a motion that counts as none
 
 
 @dataclass(frozen=True)
@@ -65,11 +70,53 @@ def motion_of(robot: str, preset: str = "clover", dry: float = DRY) -> tuple[Tra
     return run(chosen, "path_following"), chosen.robot().plant(chosen.parameters)
 
 
-def with_switching_friction(motion: Trajectory, dry: float) -> Trajectory:
-    """The same motion with motors that also overcome a dry friction c sign(q'), [N m]."""
-    rates = motion.fields["v"][:, : motion.fields["u"].shape[1]]
-    torques = motion.fields["u"] + dry * np.sign(rates)
-    return replace(motion, fields={**motion.fields, "u": torques})
+@dataclass(frozen=True)
+class TrueLog:
+    """The log of an arm that is known.
+
+    Attributes:
+        rows: times [s], angles [rad] and torques [N m].
+        true: the robot's parameters, the dry friction c1, c2, ... of its motors, and the delay.
+    """
+
+    rows: tuple[Array, Array, Array]
+    true: Mapping[str, float]
+
+
+def random_log(robot: str, seed: int, sticks: bool = True) -> TrueLog | None:
+    """A log of 10 s with random motion, friction, encoders, noise, rows and delay.
+
+    Args:
+        sticks: whether motors stick by Karnopp's model, up to twice their dry friction; else that
+            passes smoothly through standstill.
+
+    Returns:
+        None if the motors stick for ever.
+    """
+    rng = np.random.default_rng(seed)
+    dry = float(rng.uniform(0.01, 0.06))
+    values: dict[str, float | str] = {"duration": 10.0, "hold_from": 0.0, "hold_to": 0.0}
+    values |= {"speed": float(rng.uniform(3, 7)), "profile_period": float(rng.uniform(2, 4))}
+    values |= {"speed_profile": str(rng.choice(["constant", "stop_and_go", "sine", "ramp_up"]))}
+    values |= {"coulomb": dry, "stiction": dry * float(rng.uniform(1, 2)) if sticks else 0.0}
+    preset = str(rng.choice(["clover", "ellipse", "rounded square", "circle"]))
+    chosen = experiments(robot)["obstruction"].with_values(values)
+    chosen = chosen.along(presets()[preset].curve, preset)
+    logger = Logger(
+        rate=float(np.exp(rng.uniform(np.log(100), np.log(1000)))),
+        uneven=float(rng.uniform(0, 0.95)),
+        late=float(rng.uniform(-0.025, 0.025)),
+        angle_noise=float(rng.uniform(0, 5e-4)),
+        torque_noise=float(rng.uniform(0, 0.03)),
+        counts=int(rng.integers(2000, 20000)),
+    )
+    motion, system = run(chosen, "path_following"), chosen.robot().system
+    if np.ptp(motion.fields["q"], axis=0).max() < STUCK or motion.stopped_at is not None:
+        return None
+    plant = chosen.robot().plant(chosen.parameters).tolist()
+    true = dict(zip(system.parameter_names, plant, strict=True))
+    true |= {f"c{i + 1}": dry for i in range(system.m)} | {DELAY: logger.late}
+    return TrueLog(logger.rows(motion, seed), true)
 
 
 COLUMNS = {"t": "Zeit [ms]", "q1": "Achse 1 [°]", "q2": "Achse 2 [°]"}
@@ -85,3 +132,29 @@ def write_log(path: Path, t: Array, q: Array, u: Array, encoding: str = "utf-16"
         text = [f"{row[0]:.3f}", *(f"{x:.9g}" for x in row[1:])]
         lines.append(";".join([*(each.replace(".", ",") for each in text), "läuft"]))
     path.write_text("\n".join(lines) + "\n", encoding=encoding)
+
+
+def estimate_of(rows: tuple[Array, Array, Array], robot: str, plant: Array) -> Estimate:
+    """The estimate from a log that went through a file."""
+    entry = ROBOTS[robot]
+    made = entry.make(entry.parameters())
+    names = [name for name in quantities(made) if not name.startswith("force")]
+    with TemporaryDirectory() as folder:
+        path = Path(folder, "log.csv")
+        table = np.column_stack(rows)
+        np.savetxt(path, table, "%.9g", ",", header=",".join(names), comments="")
+        read = read_records(path, made, log_columns(made, {n: n for n in names}, {}))
+    return estimate(made.system, [record for _, record in read], plant)
+
+
+def shares_allowed(robot: str, log: TrueLog) -> dict[str, float]:
+    """Error of each estimate from a log that has an interval, relative to half of that."""
+    entry = ROBOTS[robot]
+    plant = entry.make(entry.parameters()).plant(entry.parameters())
+    result = estimate_of(log.rows, robot, plant)
+    shares = dict[str, float]()
+    told = [*result.found, *([result.delay] if result.delay else [])]
+    for each in (each for each in told if np.isfinite(each.high)):
+        true = log.true[each.name] + sum(share * log.true[name] for name, share in each.others)
+        shares[each.name] = 2 * abs(each.value - true) / (each.high - each.low)
+    return shares

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from itertools import product
+import shlex
 from pathlib import Path
 
 import numpy as np
@@ -12,32 +12,36 @@ from scipy.io import savemat
 
 import onpath
 from onpath.app.cli.main import run_command
+from onpath.app.exports.identification import identification_data
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
-from onpath.models.studies.linear_model import dependent_names, estimate
-from onpath.models.studies.record_file import log_columns, quantities, read_records
+from onpath.models.studies.linear_model import dependent_names
+from onpath.models.studies.record_file import log_columns, read_records
 from onpath.models.systems.catalogue import ROBOTS
 from tests.support.arm_logs import (
     COLUMNS,
     DRY,
     UNITS,
     Logger,
+    estimate_of,
     motion_of,
-    with_switching_friction,
+    random_log,
+    shares_allowed,
     write_log,
 )
 from tests.support.cases import drawn
+from tests.support.checkout import ROOT
 
 QUANTITIES = {"t": "t_s", "q1": "q1_rad", "q2": "q2_rad", "tau1": "tau1_Nm", "tau2": "tau2_Nm"}
 OPTIONS = [f"--column={name}={column}" for name, column in COLUMNS.items()]
 OPTIONS += [f"--unit={name}={unit}" for name, unit in UNITS.items()]
 
 
-def truth(robot: str, plant: np.ndarray) -> dict[str, float]:
+def truth(robot: str, plant: np.ndarray, dry: float = DRY) -> dict[str, float]:
     entry = ROBOTS[robot]
     system = entry.make(entry.parameters()).system
     known = dict(zip(system.parameter_names, plant.tolist(), strict=True))
-    return known | {f"c{i + 1}": DRY for i in range(system.m)}
+    return known | {f"c{i + 1}": dry for i in range(system.m)}
 
 
 @pytest.fixture
@@ -88,8 +92,8 @@ def test_residuals_are_small_where_the_model_is_right(log: Path) -> None:
 def test_uneven_times_give_what_even_ones_give() -> None:
     """Without noise, only the interpolation is left."""
     entry = ROBOTS["five_bar"]
-    motion, plant = motion_of("five_bar")
-    true = truth("five_bar", plant)
+    motion, plant = motion_of("five_bar", dry=0.0)
+    true = truth("five_bar", plant, dry=0.0)
     for seed, uneven in enumerate((0.0, 0.5, 0.99)):
         exact = Logger(uneven=uneven, angle_noise=0, torque_noise=0)
         values = found_in(exact.rows(motion, seed), entry.name, plant)
@@ -102,21 +106,7 @@ def found_in(
     rows: tuple[np.ndarray, np.ndarray, np.ndarray], robot: str, plant: np.ndarray
 ) -> dict[str, tuple[float, float, float]]:
     """Estimates with their intervals, of a log that went through a file."""
-    from tempfile import TemporaryDirectory
-
-    entry = ROBOTS[robot]
-    made = entry.make(entry.parameters())
-    t, q, u = rows
-    names = [name for name in quantities(made) if not name.startswith("force")]
-    with TemporaryDirectory() as folder:
-        path = Path(folder, "log.csv")
-        table = np.column_stack([t, q, u])
-        np.savetxt(path, table, "%.9g", ",", header=",".join(names), comments="")
-        records = [
-            each
-            for _, each in read_records(path, made, log_columns(made, {n: n for n in names}, {}))
-        ]
-    result = estimate(made.system, records, plant)
+    result = estimate_of(rows, robot, plant)
     assert result.delay is not None and not any(each.others for each in result.found)
     return {each.name: (each.value, each.low, each.high) for each in (*result.found, result.delay)}
 
@@ -131,44 +121,38 @@ LOGGERS = (
 
 def covered(robot: str, logger: Logger, seeds: range) -> list[bool]:
     """Whether each interval of each log contains the truth."""
-    return [share <= 1 for seed in seeds for share in shares(robot, logger, seed)]
-
-
-def shares(robot: str, logger: Logger, seed: int, switches: bool = False) -> list[float]:
-    """Ratio of each error to what its interval allows.
-
-    Args:
-        switches: whether the dry friction switches with the direction of motion.
-    """
-    motion, plant = motion_of(robot, dry=0.0 if switches else DRY)
-    motion = with_switching_friction(motion, DRY) if switches else motion
+    motion, plant = motion_of(robot)
     true = truth(robot, plant) | {"delay": logger.late}
-    found = found_in(logger.rows(motion, seed), robot, plant)
-    return [2 * abs(value - true[n]) / (high - low) for n, (value, low, high) in found.items()]
+    each = [found_in(logger.rows(motion, seed), robot, plant) for seed in seeds]
+    return [low <= true[n] <= high for found in each for n, (_, low, high) in found.items()]
 
 
 @pytest.mark.thorough
 @pytest.mark.parametrize("robot", drawn(["five_bar", "two_link_arm"], 1))
-def test_of_200_logs_as_many_intervals_contain_the_truth_as_they_say(robot: str) -> None:
-    each = [covered(robot, logger, range(50)) for logger in LOGGERS]
-    assert 0.90 <= np.mean(np.concatenate(each)) <= 0.99
+def test_of_logs_of_one_motion_as_many_intervals_contain_the_truth_as_they_say(robot: str) -> None:
+    each = [covered(robot, logger, range(12)) for logger in LOGGERS]
+    assert 0.90 <= np.mean(np.concatenate(each)) <= 1
     assert all(np.mean(of_logger) > 0.85 for of_logger in each)
 
 
 @pytest.mark.thorough
-def test_of_a_few_logs_most_intervals_contain_the_truth() -> None:
-    logger = LOGGERS[1]
-    assert np.mean(covered("five_bar", logger, range(4))) > 0.8
-
-
-@pytest.mark.thorough
 @pytest.mark.parametrize("robot", ["five_bar", "two_link_arm"])
-def test_where_friction_switches_the_intervals_are_too_narrow_as_is_said(robot: str) -> None:
-    """models/studies/README.md: one to three of ten are outside, by up to twice."""
-    for seed, logger in product(range(2), LOGGERS[:3]):
-        each = np.array(shares(robot, logger, seed, switches=True))
-        assert len(each) == 10 and 1 <= (each > 1).sum() <= 3
-        assert 1.5 < each.max() < 2.5
+def test_intervals_contain_the_truth_where_motors_stick(robot: str) -> None:
+    """Friction is not as the estimate assumes; tests/bench/intervals.py counts for each value."""
+    logs = [log for log in (random_log(robot, seed) for seed in range(15)) if log]
+    shares = [share for log in logs for share in shares_allowed(robot, log).values()]
+    assert len(shares) > 100 and np.mean(np.array(shares) <= 1) >= 0.9
+
+
+def test_a_motion_that_is_too_short_has_no_intervals(tmp_path: Path) -> None:
+    motion, _ = motion_of("five_bar")
+    t, q, u = Logger(rate=500).rows(motion, seed=1)
+    path = tmp_path / "short.csv"
+    write_log(path, t[:600], q[:600], u[:600])
+    result = onpath.identify("five_bar", path, columns=COLUMNS, units=UNITS)
+    assert all(np.isinf(low) and np.isinf(high) for low, high in result.intervals.values())
+    assert "± ?" in repr(result) and "too short" in repr(result)
+    assert identification_data(result.found)["parameters"][0]["interval"] is None
 
 
 def test_the_advised_motion_tells_what_the_log_does_not(tmp_path: Path) -> None:
@@ -185,6 +169,24 @@ def test_the_advised_motion_tells_what_the_log_does_not(tmp_path: Path) -> None:
     assert motion is not None and not motion.left
     assert "q2" in motion.moving and {"M22", "b2"} <= {*motion.identified}
     assert f"would also tell {', '.join(motion.identified)}" in repr(result)
+
+
+def test_the_log_of_the_examples_gives_the_arm_of_which_it_is(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """The command of models/studies/README.md; assets/examples/make_arm_log.py has the truth."""
+    text = (ROOT / "models" / "studies" / "README.md").read_text("utf-8")
+    (block,) = [each for each in text.split("```sh") if "assets/examples/arm.csv" in each]
+    program, *command = shlex.split(block.split("```")[0].replace("\\\n", " "))
+    command = [each.replace("assets", str(ROOT / "assets")) for each in command]
+    assert program == "onpath" and run_command([*command, "--json"]) == 0
+    data = json.loads(capsys.readouterr().out)
+    true = {"M11": 0.0226, "M22": 0.012, "b1": 0.05, "b2": 0.03, "c1": 0.03, "c2": 0.03}
+    told = {each["name"]: each["interval"] for each in data["parameters"]}
+    for name, value in (true | dict.fromkeys(("M12", "G1", "G2"), 0.0)).items():
+        assert told[name][0] <= value <= told[name][1], name
+    low, high = data["torque_late_interval_s"]
+    assert low <= 0.0128 <= high
 
 
 def test_a_rich_log_needs_no_other_motion(log: Path) -> None:
