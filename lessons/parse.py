@@ -19,6 +19,7 @@ from onpath.lessons.adaptive.own_numbers import unanswered
 from onpath.lessons.behaviour.marks import Behaviour, take_behaviours
 from onpath.lessons.completeness import first_page_faults, lacks, order_faults
 from onpath.lessons.concept_test.concept_test import FOLDER, lacks_of_test
+from onpath.lessons.equations import FILE, Part, equations_table, read_equations
 from onpath.lessons.formulas import TextError, reader
 from onpath.lessons.kept.option_keys import fingerprint, keys_of
 from onpath.lessons.measures.stated import Stated, take_stated
@@ -244,6 +245,8 @@ class _Reader:
             draft.scene = self._checked(content, line, StepSetup, self._scene_faults)
         elif what == "script":
             draft.script = self._checked(content, line, Script, self._script_faults)
+        elif what == "equations":
+            self._equations(draft, self._checked(content, line, Part, lambda _: ()), line)
         else:
             kinds: dict[str, tuple[Any, Callable[[Any], Iterable[str]]]] = {
                 "predict": (Prediction, prediction_faults),
@@ -285,6 +288,21 @@ class _Reader:
             self._complain(line, "a fold needs a title: ```fold I cannot play: tell me")
         self._complain_all(line - 1, text_faults(title))
         self._prose(draft, self._markdown.parse(content), line, title)
+
+    def _equations(self, draft: _Draft, part: Part | None, line: int) -> None:
+        """Put a part of the paper's equations into a fold."""
+        file = self._path.parent.parent / FILE
+        try:
+            known = read_equations(file)
+        except (FileError, ValueError, KeyError) as error:
+            self._complain(line, f"{file}: {error}")
+            return
+        found = [each for each in known if part and part.first <= each.number <= part.last]
+        if not found:
+            self._complain(line, f"{FILE} has no equation with such a number")
+            return
+        title, table = equations_table(found, self._path.stem)
+        self._fold(draft, title, table, line)
 
     def _branch(self, draft: _Draft, when: str, content: str, line: int) -> None:
         """Read a fenced block of Markdown that is shown only after certain answers."""

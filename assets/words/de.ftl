@@ -75,6 +75,16 @@ event-robot_any = einen anderen Roboter wählen
 event-law = das Regelgesetz { $detail } wählen
 event-law_any = ein anderes Regelgesetz wählen
 
+equations-title =
+    { $count ->
+        [one] Gleichung ({ $first }) des Artikels, Zeichen für Zeichen
+       *[other] Gleichungen ({ $first }) bis ({ $last }) des Artikels, Zeichen für Zeichen
+    }
+equations-formula = Artikel
+equations-here = hier
+equations-place = wo
+equations-lesson = Lektion { $number }
+equations-figure = Bild { $number }
 lesson-lessons = Lektionen
 lesson-choose = Lektionen: vorhersagen, probieren, sehen, verstehen
 lesson-minutes = { $minutes } min

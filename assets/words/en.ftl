@@ -77,6 +77,16 @@ event-robot_any = choose another robot
 event-law = choose the law { $detail }
 event-law_any = choose another law
 
+equations-title =
+    { $count ->
+        [one] Equation ({ $first }) of the paper, symbol by symbol
+       *[other] Equations ({ $first }) to ({ $last }) of the paper, symbol by symbol
+    }
+equations-formula = paper
+equations-here = here
+equations-place = where
+equations-lesson = lesson { $number }
+equations-figure = figure { $number }
 lesson-lessons = Lessons
 lesson-choose = Lessons: predict, try, see, explain
 lesson-minutes = { $minutes } min

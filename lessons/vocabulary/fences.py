@@ -6,7 +6,10 @@ import re
 from collections.abc import Iterator
 from difflib import get_close_matches
 
-FENCES = ("step", "scene", "script", "predict", "task", "quiz", "number", "open", "derivation")
+FENCES = (
+    *("step", "scene", "script", "predict", "task", "quiz", "number", "open", "derivation"),
+    "equations",
+)
 """Blocks of TOML."""
 KNOWN = (*FENCES, "watch", "fold", "when")
 LANGUAGES = ("scheme", "opencl", "openscad")

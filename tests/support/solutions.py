@@ -105,6 +105,12 @@ SOLUTIONS: dict[str, dict[str, tuple[Gesture, ...]]] = {
             *(Enter("K3", 8000), Enter("K5", 7), RESET, Wait(3.3), *TWO_HOLDS),
         ),
     },
+    "09-read-the-paper": {
+        "level-set": (
+            *(Choose("Measured across", "level set"), Wait(1)),
+            *(Key("d", 8), Wait(1), Key("x"), Wait(2)),
+        ),
+    },
 }
 
 
