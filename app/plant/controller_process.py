@@ -208,7 +208,10 @@ class _Serving:
             datagram, sender = self._plant.recvfrom(LARGEST)
         except OSError:  # the plant's socket has been closed: it is silent
             return
+        known = self._link.started
         if answer := self._link.received(datagram, sender, time.monotonic()):
+            if not known:
+                self._plant.connect(sender)  # the system leaves out all others, also floods
             self._send(answer)
             self._link.sent(time.monotonic())
 
@@ -254,7 +257,7 @@ class _Serving:
 
     def _send(self, answer: bytes) -> None:
         with suppress(OSError):  # the plant is not there
-            self._plant.sendto(answer, self._link.sender)
+            self._plant.send(answer)
 
 
 def _warm_up(controllers: Mapping[str, Controller]) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -96,11 +95,6 @@ class PlantLink:
     def heard(self) -> float:
         """When the last measurement came, [s] of the given times."""
         return self._heard
-
-    @property
-    def sender(self) -> Any:
-        """The address of the plant."""
-        return self._sender
 
     def received(self, datagram: bytes, sender: Hashable, now: float) -> bytes | None:
         """The answer to a datagram; None: it has none.
