@@ -24,16 +24,16 @@ def programme(across, speed, place):
     """A solver for the accelerations, of theta and xi, on a circle."""
     a, now, wanted = ca.SX.sym("a", STEPS, 2), ca.SX.sym("now", 2, 2), ca.SX.sym("wanted", STEPS, 2)
     ahead = STEP * np.arange(1, STEPS + 1)
-    free = ca.repmat(now[0, :], STEPS, 1) + ca.mtimes(ahead, now[1, :])
-    theta, xi = ca.horzsplit(free + ca.mtimes(PLACE, a))
-    rate = now[1, 0] + ca.mtimes(RATE, a[:, 0])
+    free = ca.repmat(now[0, :], STEPS, 1) + ca.DM(ahead) @ now[1, :]
+    theta, xi = ca.horzsplit(free + ca.DM(PLACE) @ a)
+    rate = now[1, 0] + ca.DM(RATE) @ a[:, 0]
     y = (RADIUS - xi) * ca.horzcat(ca.cos(theta), ca.sin(theta))
     clock = RADIUS * ca.horzcat(ca.cos(wanted[:, 0]), ca.sin(wanted[:, 0]))
     cost = across * ca.sumsqr(xi) + speed * ca.sumsqr(rate - wanted[:, 1])
     cost += place * ca.sumsqr(y - clock) + EFFORT * (
         ca.sumsqr(RADIUS * a[:, 0]) + ca.sumsqr(a[:, 1])
     )
-    given = ca.veccat(now, wanted)
+    given = ca.vertcat(ca.vec(now), ca.vec(wanted))
     quiet = {"print_header": False, "print_iteration": False, "print_status": False}
     options = {"qpsol": "qrqp", "qpsol_options": {"print_iter": False, "print_header": False}}
     problem = {"x": ca.vec(a), "p": given, "f": cost, "g": y[:, 1]}
@@ -52,7 +52,7 @@ class PredictivePathFollowing:
         begin = time.perf_counter()
         known = [[now.theta, now.xi[0]], [now.theta_rate, now.xi_rate[0]]]
         clock = now.speed * (now.t + STEP * np.arange(1, STEPS + 1))
-        given = ca.veccat(ca.DM(known), clock, np.full(STEPS, now.speed))
+        given = np.concatenate([np.ravel(known, "F"), clock, np.full(STEPS, now.speed)])
         top = WALL - MARGIN if now.t < UNTIL else np.inf
         found = self.solver(x0=self.guess, p=given, ubg=top)["x"].full()[:, 0]
         self.guess = found
