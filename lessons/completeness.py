@@ -15,22 +15,26 @@ from onpath.lessons.schema import (
     Quiz,
     Sketch,
     Step,
+    StepKind,
     Text,
 )
 from onpath.lessons.task_schema import Task
 
-NEEDED = ("play", "predict", "run", "explain", "task")
+NEEDED: tuple[StepKind, ...] = ("play", "predict", "run", "explain", "task")
 """Each lesson has at least one step of each of these kinds that is not optional."""
 
 
-def lacks(steps: Sequence[Step], broken: Collection[int] = ()) -> Iterator[tuple[int, str]]:
+def lacks(
+    steps: Sequence[Step], broken: Collection[int] = (), needed: Collection[StepKind] = NEEDED
+) -> Iterator[tuple[int, str]]:
     """Missing kinds of steps and incomplete steps: line and problem of each.
 
     Args:
         broken: first lines of the steps in which a block could not be read.
+        needed: kinds of which there must be a step that is not optional.
     """
     kinds = [step.kind for step in steps if not step.optional]
-    for kind in NEEDED:
+    for kind in needed:
         if kind not in kinds:
             optional = any(step.kind == kind for step in steps)
             yield 1, f"the lesson has no step `# {kind}: …`" + " that is not optional" * optional

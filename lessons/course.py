@@ -16,6 +16,7 @@ from msgspec.structs import replace
 from onpath.lessons.action_schema import Script, StepSetup
 from onpath.lessons.cheating import fair_faults
 from onpath.lessons.concept_test.concept_test import FOLDER, both_tests
+from onpath.lessons.lecture import LECTURE
 from onpath.lessons.parse import read_lesson
 from onpath.lessons.problems import LessonError, Problem, line_of, near
 from onpath.lessons.routes import FOLDER as ROUTES
@@ -56,11 +57,18 @@ class Course:
         lessons: name -> language -> lesson.
         routes: name -> route.
         tests: name -> language -> lesson; the concept test before and after the course, if any.
+        lecture: language -> lesson, see `lessons.lecture`; empty if there is none.
     """
 
     lessons: dict[str, Mapping[str, Lesson]]
     routes: dict[str, Route] = field(default_factory=dict[str, Route])
     tests: dict[str, Mapping[str, Lesson]] = field(default_factory=dict[str, Mapping[str, Lesson]])
+    lecture: Mapping[str, Lesson] = field(default_factory=dict[str, Lesson])
+
+    @property
+    def played(self) -> dict[str, Mapping[str, Lesson]]:
+        """The lessons and the lecture by name: all that has scripts."""
+        return self.lessons | ({LECTURE: self.lecture} if self.lecture else {})
 
     def has(self, name: str) -> bool:
         """Whether there is a lesson or a test of this name."""
@@ -71,12 +79,12 @@ class Course:
         return self.has(name) and 0 <= first <= last < len(self.lesson(name, DEFAULT).steps)
 
     def lesson(self, name: str, language: str) -> Lesson:
-        """A lesson or test in a language; failing that, in English or else in any language.
+        """A lesson, test or lecture in a language, or in English, or else in any language.
 
         Raises:
             KeyError: there is no such lesson.
         """
-        versions = self.lessons[name] if name in self.lessons else self.tests[name]
+        versions = (self.played | self.tests)[name]
         return versions.get(language) or versions.get(DEFAULT) or next(iter(versions.values()))
 
     def numbers(self) -> dict[str, str]:
@@ -110,6 +118,7 @@ def read_course(
         first: a course to which these are added.
     """
     lessons, routes, tests = dict(first.lessons), first.routes, first.tests
+    lecture = first.lecture
     homes, problems = dict[str, Path](), list[Problem]()
     for folder in folders:
         found = sorted(
@@ -127,6 +136,8 @@ def read_course(
             problems += wrong
             if home.name == FOLDER:
                 tests = both_tests(versions) or tests
+            elif home.name == LECTURE:
+                lecture = versions or lecture
             elif versions and home.name in lessons:
                 problems.append(Problem(str(home), 1, f"a second lesson {home.name!r}"))
             elif versions:
@@ -134,7 +145,7 @@ def read_course(
         problems += _folder_faults(folder, found)
         read = read_routes(folder, lessons)
         routes, problems = {**read.routes, **routes}, problems + read.problems
-    course = Course(lessons, routes, tests)
+    course = Course(lessons, routes, tests, lecture)
     problems += _warm_up_faults(course, homes)
     return course, sorted(problems)
 
@@ -169,11 +180,11 @@ def _folder_faults(folder: Path, lessons: Sequence[Path]) -> Iterator[Problem]:
                 yield Problem(
                     str(home), 1, f"{first!r} has the number {number[0].removesuffix('-')}, too"
                 )
-    known = [ROUTES, FOLDER]
+    known = [ROUTES, FOLDER, LECTURE]
     for other in sorted(folder.iterdir()) if lessons else ():
         unread = other not in lessons and other.name not in known and other.name[0] not in "._"
         if unread and other.is_dir():
-            text = f"it is no lesson, having no en.md, and neither {ROUTES} nor {FOLDER}"
+            text = f"it is no lesson, having no en.md, and not one of {', '.join(known)}"
             yield Problem(str(other), 1, text + near(other.name.lower(), known))
 
 
@@ -334,6 +345,7 @@ def _structure(step: Step) -> dict[str, object]:
         "scene": _without_words(step.scene),
         "script": step.script,
         "block `watch`": bool(step.watch),
+        "block `notes`": bool(step.notes),
         "conditions of texts (`when`)": [text.when for text in texts if text.when],
         "number of folds": sum(text.html.count("<details>") for text in texts),
         "lab links": [link.actions for text in texts for link in text.links],

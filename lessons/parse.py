@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, get_args
@@ -17,11 +17,12 @@ from onpath.lessons.action_schema import Script, StepSetup
 from onpath.lessons.adaptive.branches import faults_of_when
 from onpath.lessons.adaptive.own_numbers import unanswered
 from onpath.lessons.behaviour.marks import Behaviour, take_behaviours
-from onpath.lessons.completeness import first_page_faults, lacks, order_faults
+from onpath.lessons.completeness import NEEDED, first_page_faults, lacks, order_faults
 from onpath.lessons.concept_test.concept_test import FOLDER, lacks_of_test
 from onpath.lessons.equations import FILE, Part, equations_table, read_equations
 from onpath.lessons.formulas import TextError, reader
 from onpath.lessons.kept.option_keys import fingerprint, keys_of
+from onpath.lessons.lecture import LECTURE
 from onpath.lessons.measures.stated import Stated, take_stated
 from onpath.lessons.problems import LessonError, Problem, line_of
 from onpath.lessons.prose import data_faults, own_picture, read_prose, text_faults
@@ -73,6 +74,7 @@ class _Draft:
     script: Script | None = None
     mark: StepMark = NO_MARK
     watch: Markup = NO_WORDS
+    notes: Markup = NO_WORDS
     fences: set[str] = field(default_factory=set[str])  # names of its blocks of TOML
     broken: bool = False  # whether one of its blocks could not be read
 
@@ -91,6 +93,7 @@ class _Draft:
             stated=tuple(stated),
             behaviours=tuple(behaviours),
             watch=self.watch,
+            notes=self.notes,
         )
 
 
@@ -111,7 +114,7 @@ class _Reader:
     """Reads one lesson file and collects its problems."""
 
     def __init__(self, path: Path, text: str) -> None:
-        self._path = path
+        self._path, self._folder = path, path.parent.name
         self._problems: list[Problem] = []
         text, self._stated = take_stated(text, self._complain)
         self._text, self._behaviours = take_behaviours(text, self._complain)
@@ -199,23 +202,26 @@ class _Reader:
                 self._fold(drafts[-1], fold[1] or "", head.content, line + 1)
             elif head.type == "fence" and (branch := BRANCH.fullmatch(head.info.strip())):
                 self._branch(drafts[-1], branch[1] or "", head.content, line + 1)
-            elif head.type == "fence" and head.info.strip() == "watch":
-                self._watch(drafts[-1], head.content, line + 1)
+            elif head.type == "fence" and head.info.strip() in ("watch", "notes"):
+                read = self._watch if head.info.strip() == "watch" else self._notes
+                read(drafts[-1], head.content, line + 1)
             else:
                 self._prose(drafts[-1], tokens, line)
         broken = {draft.line for draft in drafts if draft.broken}
         steps = self._made(drafts)
-        is_test = self._path.parent.name == FOLDER
-        lacking = (
-            ((1, fault) for fault in lacks_of_test(steps)) if is_test else lacks(steps, broken)
-        )
-        for line, fault in [*lacking, *order_faults(steps, broken)]:
+        for line, fault in [*self._lacks(steps, broken), *order_faults(steps, broken)]:
             self._complain(line, fault)
         for line, when, fault in faults_of_when(steps):
             self._complain(self._branches.get((line, when), line), fault)
         for line, words, fault in unanswered(steps):
             self._complain(self._line_of(words, line), fault)
         return drafts
+
+    def _lacks(self, steps: Sequence[Step], broken: set[int]) -> Iterable[tuple[int, str]]:
+        """What a lesson lacks as a whole; of the test and of a lecture, less is asked."""
+        if self._folder == FOLDER:
+            return ((1, fault) for fault in lacks_of_test(steps))
+        return lacks(steps, broken, () if self._folder == LECTURE else NEEDED)
 
     def _line_of(self, words: str, first: int) -> int:
         """The first line from `first` on that contains some words; `first` if there is none."""
@@ -328,6 +334,18 @@ class _Reader:
             self._complain(line - 1, "a watch is a sentence or two, without lab links")
         self._complain_all(line, (fault for _, fault in read.faults))
         draft.watch = read.html
+
+    def _notes(self, draft: _Draft, content: str, line: int) -> None:
+        """Read a fenced block of Markdown for who gives the lecture."""
+        if self._folder != LECTURE:
+            self._complain(line - 1, "notes stand in a lecture: students read a lesson")
+        read = read_prose(
+            self._markdown, self._markdown.parse(content), self._path.parent, self._robot
+        )
+        if draft.notes or not read.html or read.links:
+            self._complain(line - 1, "a slide has one block of notes, with words and no lab links")
+        self._complain_all(line, (fault for _, fault in read.faults))
+        draft.notes = read.html
 
     def _prose(
         self, draft: _Draft, tokens: list[Token], line: int, fold: str = "", when: str = ""

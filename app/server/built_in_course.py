@@ -12,6 +12,7 @@ from msgspec.structs import replace
 
 from onpath.lessons.concept_test.concept_test import FOLDER, TESTS
 from onpath.lessons.course import BUILT_IN, Course
+from onpath.lessons.lecture import LECTURE
 from onpath.lessons.parse import read_lesson
 from onpath.lessons.routes import read_routes
 from onpath.lessons.schema import Lesson
@@ -64,6 +65,8 @@ def built_in_course() -> Course:
         return Versions(home, name, (DEFAULT, *sorted(languages)))
 
     homes = sorted(file.parent for file in BUILT_IN.glob(f"*/{DEFAULT}.md"))
-    lessons = {home.name: versions(home, home.name) for home in homes if home.name != FOLDER}
+    names = [home.name for home in homes if home.name not in (FOLDER, LECTURE)]
+    lessons = {name: versions(BUILT_IN / name, name) for name in names}
     tests = {name: versions(BUILT_IN / FOLDER, name) for name in TESTS}
-    return Course(lessons, read_routes(BUILT_IN).routes, tests)
+    lecture = versions(BUILT_IN / LECTURE, LECTURE)
+    return Course(lessons, read_routes(BUILT_IN).routes, tests, lecture)

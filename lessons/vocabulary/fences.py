@@ -11,7 +11,7 @@ FENCES = (
     "equations",
 )
 """Blocks of TOML."""
-KNOWN = (*FENCES, "watch", "fold", "when")
+KNOWN = (*FENCES, "watch", "notes", "fold", "when")
 LANGUAGES = ("scheme", "opencl", "openscad")
 """Programming languages with names similar to those of blocks."""
 FIRST = re.compile(r"[^\W\d_]+")

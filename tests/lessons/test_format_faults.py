@@ -75,6 +75,7 @@ def faults(path: Path) -> list[tuple[int, str]]:
         (LATEX, "- ```quiz\n  So.\n  ```", "not in a list"),
         (LATEX, "```watch\nThe arm.\n```", "a watch stands in a `run` step"),
         (LATEX, "```watsh\nThe arm.\n```", "did you mean watch"),
+        (LATEX, "```notes\nAsk.\n```", "notes stand in a lecture"),
         (RUN, "```watch\n[go](lab:run)\n```\n" + RUN, "without lab links"),
         (RUN, "```watch\nSee {{your number}}.\n```\n" + RUN, "no numbers of the student"),
         (RUN, 2 * "```watch\nThe arm.\n```\n" + RUN, "a second watch"),

@@ -68,12 +68,17 @@ class LessonEntry:
 
 
 def start_page(
-    words: Words, figure: dict[str, Any], entries: list[LessonEntry], around: dict[str, Any]
+    words: Words,
+    figure: dict[str, Any],
+    entries: list[LessonEntry],
+    lecture: str,
+    around: dict[str, Any],
 ) -> str:
     """The start page.
 
     Args:
         figure: data of the free lab's figure.
+        lecture: address of the lecture; empty if there is none.
         around: fields of every page: the address of its start page, and its other languages.
     """
     lessons = {
@@ -86,7 +91,7 @@ def start_page(
         for entry in entries
     }
     data = {"words": _messages(words), "lesson": "", "figures": [figure], "lessons": lessons}
-    fields = {"description": words("site.intro"), "entries": entries}
+    fields = {"description": words("site.intro"), "entries": entries, "lecture": lecture}
     return _page("start", words, words("site.title"), data, around, **fields)
 
 
@@ -111,9 +116,10 @@ def lesson_page(
     around: dict[str, Any],
     scorm: Package | None = None,
 ) -> str:
-    """The page of a lesson.
+    """The page of a lesson, or of the lecture.
 
     Args:
+        number: of the lesson; empty for the lecture.
         steps: the steps; their figures have names of files in place of modules.
         pictures: pictures by number of the step.
         following: address and title of the next lesson, if there is one.
@@ -145,11 +151,12 @@ def lesson_page(
             for step in steps
         ],
     }
-    title = f"{number}. {lesson.front.title} · OnPath"
-    fields = {"lesson": lesson, "number": number, "steps": steps, "pictures": pictures}
+    heading = f"{number}. {lesson.front.title}" if number else lesson.front.title
+    fields = {"lesson": lesson, "heading": heading, "steps": steps, "pictures": pictures}
     fields |= {"description": lesson.front.summary, "next": following}
     fields["live"] = partial(live, lesson)
-    return _page("lesson", words, title, data, around, **fields)
+    name, title = "lesson" if number else "lecture", f"{heading} · OnPath"
+    return _page(name, words, title, data, around, **fields)
 
 
 def site_style() -> str:

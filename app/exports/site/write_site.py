@@ -29,6 +29,7 @@ from onpath.app.exports.standalone.figure_data import figure_data
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.assets import asset_path
 from onpath.lessons.course import REFERENCE, Course, read_references
+from onpath.lessons.lecture import LECTURE
 from onpath.lessons.progress import Truth
 from onpath.lessons.words import DEFAULT, Words
 from onpath.models.closed_loop.loops import InterpretedLoop
@@ -51,7 +52,7 @@ def write_site(folder: Path, course: Course, home: Path, languages: Iterable[str
     """
     with _whole_folder(folder) as scratch:
         _write_shared(scratch)
-        truths = _truths(course, course.lessons)
+        truths = _truths(course, course.played)
         writer = _SiteWriter(
             folder=scratch,
             course=course,
@@ -112,7 +113,7 @@ class _SiteWriter:
         for language in self._languages:
             words = Words(language)
             self._start(words)
-            for name in self._course.lessons:
+            for name in self._course.played:
                 self.lesson(name, words)
 
     def _address(self, name: str, language: str) -> str:
@@ -136,7 +137,14 @@ class _SiteWriter:
             )
             for name, number in self._course.numbers().items()
         ]
-        page = start_page(words, figure, entries, self._around("index", words))
+        lecture = self._address(LECTURE, words.language) if self._course.lecture else ""
+        page = start_page(
+            words=words,
+            figure=figure,
+            entries=entries,
+            lecture=lecture,
+            around=self._around("index", words),
+        )
         self._write("index", words, page)
 
     def lesson(self, name: str, words: Words) -> str:
@@ -150,7 +158,7 @@ class _SiteWriter:
         pictures = dict(self._pictures(name, steps, words))
         page = lesson_page(
             lesson=lesson,
-            number=self._course.numbers()[name],
+            number=self._course.numbers().get(name, ""),
             steps=steps,
             pictures=pictures,
             following=self._following(name, words),
@@ -175,6 +183,8 @@ class _SiteWriter:
 
     def _following(self, name: str, words: Words) -> dict[str, str] | None:
         names = list(self._course.lessons)
+        if name not in names:
+            return None
         after = names[names.index(name) + 1 :]
         if not after or self._scorm:
             return None

@@ -39,7 +39,7 @@ def play_course(course: Course, folder: Path, loop_cache: LoopCache) -> Iterator
         folder: contains the lessons' own folders.
         loop_cache: provides the closed loops.
     """
-    for name in course.lessons:
+    for name, versions in course.played.items():
         lesson = course.lesson(name, DEFAULT)
         home = folder / name
         file = home / f"{lesson.language}.md"
@@ -48,7 +48,7 @@ def play_course(course: Course, folder: Path, loop_cache: LoopCache) -> Iterator
             faults = [*stated_faults(lesson, runs), *sketch_faults(lesson, runs)]
         faults += behaviour_faults(lesson, read_plays(home / REFERENCE), loop_cache)
         yield from (Problem(str(file), line, text) for line, text in faults)
-        for other in course.lessons[name].values():
+        for other in versions.values():
             file = home / f"{other.language}.md"
             shown = page_faults(other, read_text(file))
             yield from (Problem(str(file), line, text) for line, text in shown)

@@ -53,7 +53,7 @@ def sentence_faults(course: Course, folder: Path, loop_cache: LoopCache) -> Iter
     for (where, language), (file, text) in texts.items():
         for line, fault in list_faults(listed, where, language, text, _of_law(where)):
             yield Problem(file, line, fault)
-        if where not in (*course.lessons, FOLDER):
+        if where not in (*course.played, FOLDER):
             yield from (Problem(file, *fault) for fault in name_faults(text, language))
     for each in listed:
         if fault := _fault(each, loop_cache):
@@ -74,7 +74,7 @@ def _of_law(where: str) -> bool:
 
 def _texts(course: Course, folder: Path) -> Iterator[tuple[tuple[str, str], tuple[str, str]]]:
     """Name and language of each text, with its file and its words."""
-    names = {**{name: name for name in course.lessons}, **{name: FOLDER for name in course.tests}}
+    names = {**{name: name for name in course.played}, **{name: FOLDER for name in course.tests}}
     for home in dict.fromkeys(names.values()):
         for file in sorted((folder / home).glob("??.md")):
             yield (home, file.stem), (str(file), read_text(file))

@@ -10,6 +10,7 @@ import { gradeOf } from "../lessons/grade"
 import { LocalProgress, type Tell } from "../lessons/progress"
 import { ScormProgress } from "../lessons/scorm"
 import { LocalStudent } from "../lessons/student"
+import { hearNotes } from "./lecture"
 import { Player } from "./player"
 import { StartPage } from "./start"
 
@@ -23,6 +24,7 @@ function showPage(page: PageData): void {
     const local = new LocalProgress(tell)
     const progress = (page.scorm && ScormProgress.found(page.scorm, tell)) || local
     const site = page.lesson ? new Player(page, progress) : new StartPage(page, local)
+    hearNotes()
     Object.assign(window, { LocalStudent, ScormProgress, site, judge, wayOf, gradeOf, packed, unpacked, shapesOf }) // for tests
 }
 

@@ -13,10 +13,12 @@ from onpath.app.cli.main import run_command
 from onpath.app.exports.site.pages import MESSAGES, POLICY
 from onpath.app.exports.site.step_figures import figure_of, step_figure
 from onpath.app.exports.site.task_data import MESSAGES as CHECKS
+from onpath.app.server.built_in_course import built_in_course
 from onpath.app.steps.player_words import player_words
 from onpath.app.view.page_words import words_message
 from onpath.assets import asset_path
 from onpath.lessons.course import BUILT_IN, REFERENCE, read_course, read_references
+from onpath.lessons.lecture import LECTURE
 from onpath.lessons.schema import Text
 from onpath.lessons.words import ENGLISH
 from onpath.models.systems.catalogue import ROBOTS
@@ -61,7 +63,7 @@ class Seen(HTMLParser):
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return exported_site(tmp_path_factory.mktemp("site"))
+    return exported_site(tmp_path_factory.mktemp("site"), lessons=(LESSON, LECTURE))
 
 
 @pytest.mark.parametrize("language", ["en", "de"])
@@ -82,9 +84,18 @@ def test_without_scripts_all_of_a_lesson_is_there(site: Path, language: str) -> 
                 assert " ".join(Seen(str(html)).text.split()) in words
     assert seen.tags.count("math") > 10
     runs = [step for step in lesson.steps if step.script]
-    pictures = list((site / "site" / "pictures").glob(f"*-{language}.svg"))
+    pictures = list((site / "site" / "pictures").glob(f"{LESSON}-*-{language}.svg"))
     assert len(pictures) == len(runs) and all(seen.alts)
     assert sum(" 47" in alt or "46.9" in alt for alt in seen.alts) == 1  # the arches
+
+
+@pytest.mark.parametrize(("language", "name"), [("en", "lecture.html"), ("de", "lecture.de.html")])
+def test_the_lecture_has_notes_and_is_linked(site: Path, language: str, name: str) -> None:
+    start = "index.html" if language == "en" else f"index.{language}.html"
+    assert name in Seen((site / start).read_text("utf-8")).loaded
+    words = " ".join(Seen((site / name).read_text("utf-8")).text.split())
+    for step in built_in_course().lecture[language].steps:
+        assert " ".join(Seen(str(step.notes)).text.split()) in words
 
 
 def test_nothing_of_a_page_is_inline_or_from_elsewhere(site: Path) -> None:
@@ -111,7 +122,9 @@ def test_pages_say_what_they_are(site: Path) -> None:
 
 def test_figures_share_their_kernels(site: Path) -> None:
     kernels = list((site / "site" / "kernels").iterdir())
-    assert len(kernels) == 2  # the free lab's, and that of eleven steps in two languages
+    # the free lab's; that of the lesson's steps, in two languages; two more of the lecture: its
+    # steps with a path to bend, and with a flexible link
+    assert len(kernels) == 4
 
 
 def test_each_figure_of_a_site_is_small(site: Path) -> None:
