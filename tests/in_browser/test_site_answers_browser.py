@@ -69,7 +69,8 @@ def test_a_text_has_the_numbers_of_the_curve_that_was_drawn(browser: Browser, ad
         for _ in range(ups):
             page.keyboard.press("ArrowUp")
     reader.press("Commit to this prediction")
-    drawn = f"You drew {max(page.evaluate('site.notes.answers[1].values')):.3g}, and chose: –."
+    values = page.evaluate("site.notes.given.find(each => each.item === '1').answer.values")
+    drawn = f"You drew {max(values):.3g}, and chose: –."
     page.evaluate("site.open(5)")
     assert drawn in page.locator(".step.open").inner_text()
     page.evaluate("site.open(2)")  # only the lab can play it: the truth comes with the page
