@@ -371,9 +371,12 @@ def _asked(step: Step) -> dict[str, object]:
             [o.right for o in b.options] for b in blocks if isinstance(b, Choice | Quiz)
         ],
         "axes to draw on": [
-            replace(b, question="", usual="", answer="", ask="", reasons=(), hidden=())
+            replace(b, question="", usual="", answer="", ask="", reasons=(), hidden=(), shapes=())
             for b in blocks
             if isinstance(b, Sketch)
+        ],
+        "shapes of curves": [
+            [shape.without_words for shape in b.shapes] for b in blocks if isinstance(b, Sketch)
         ],
         "number of reasons or hidden words": [
             (b.why, len(b.reasons), len(b.hidden)) for b in step.predictions()

@@ -52,6 +52,27 @@ class Choice(Data, frozen=True, tag="choice", tag_field="kind"):
     hidden: tuple[str, ...] = ()
 
 
+class Shape(Data, frozen=True):
+    """A kind of curve that students draw, by features that can be seen in it.
+
+    Attributes:
+        name: completes "12 drew …".
+        peaks: fewest and most peaks, see `lessons.measures.shapes`; None for any number.
+        highest: lowest and highest value of its highest point, in the quantity's unit.
+        at: a time [s], and the lowest and the highest value then; each of these.
+    """
+
+    name: str
+    peaks: tuple[int, int] | None = None
+    highest: tuple[float, float] | None = None
+    at: tuple[tuple[float, float, float], ...] = ()
+
+    @property
+    def without_words(self) -> tuple[object, ...]:
+        """Its features, the same in all languages."""
+        return self.peaks, self.highest, self.at
+
+
 class Sketch(Data, frozen=True, tag="sketch", tag_field="kind"):
     """A prediction: a curve over time, drawn by hand.
 
@@ -63,6 +84,7 @@ class Sketch(Data, frozen=True, tag="sketch", tag_field="kind"):
         usual: for the teacher, what students usually draw.
         answer: for the teacher, what the true curve is like, and why.
         ask: for the teacher, what to ask the class before it is seen.
+        shapes: by which the curves of a class are grouped; the first that fits is a curve's.
         reasons, why, hidden: as in `Choice`.
     """
 
@@ -75,6 +97,7 @@ class Sketch(Data, frozen=True, tag="sketch", tag_field="kind"):
     usual: str = ""
     answer: str = ""
     ask: str = ""
+    shapes: tuple[Shape, ...] = ()
     reasons: tuple[str, ...] = ()
     why: bool = False
     hidden: tuple[str, ...] = ()

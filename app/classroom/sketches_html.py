@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -15,10 +15,11 @@ from onpath.app.common.templates import render
 from onpath.lessons.action_schema import RobotName
 from onpath.lessons.given import MOST_POINTS as MOST_OF_TRUTH
 from onpath.lessons.given import Answer
+from onpath.lessons.measures.shapes import shape_of
 from onpath.lessons.measures.thinning import peaks
 from onpath.lessons.progress import Truth
 from onpath.lessons.record import QUANTITIES
-from onpath.lessons.schema import Sketch
+from onpath.lessons.schema import Shape, Sketch
 from onpath.lessons.sides import ROLES
 from onpath.lessons.words import Words
 
@@ -130,8 +131,23 @@ def sketches_view(
             (n, _points(block, frame, each.times, each.values, MOST_POINTS)) for n, each in small
         ],
         names=names,
+        groups=[_groups(block, i, each.found, picks, words) for i, each in enumerate(rounds)],
         facts=rounds[0].facts if len(rounds) == 1 else "",
         large=large,
+    )
+
+
+def _groups(block: Sketch, number: int, found: Distribution, picks: Picks, words: Words) -> str:
+    """How many have drawn each shape that the author names, with one of them as an example."""
+    drawn = dict[Shape | None, list[int]]()
+    for at, sketch in replace(picks, picked=()).of(number, found.sketches) if block.shapes else ():
+        drawn.setdefault(shape_of(block, sketch), []).append(at)
+    ordered = sorted(drawn.items(), key=lambda each: (each[0] is None, -len(each[1])))
+    return " ".join(
+        words("class.drew_other", count=len(numbers), example=numbers[0])
+        if shape is None
+        else words("class.drew", count=len(numbers), name=shape.name, example=numbers[0])
+        for shape, numbers in ordered
     )
 
 

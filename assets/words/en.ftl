@@ -405,6 +405,8 @@ class-given =
         [0] { $given } of { $here } here have answered.
        *[other] { $given } of { $here } here have answered ({ $away } away).
     }
+class-drew = { $count } drew { $name } (such as { $example }).
+class-drew_other = { $count } drew something else (such as { $example }).
 class-skipped = { $count } skipped it.
 class-late =
     { $count ->

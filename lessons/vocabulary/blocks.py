@@ -11,7 +11,7 @@ from onpath.lessons.derivation.typed import NAME, NUMPY
 from onpath.lessons.measures.responses import WITH_SIGN
 from onpath.lessons.measures.stated import zero_faults
 from onpath.lessons.record import QUANTITIES
-from onpath.lessons.schema import Derivation, NumberQuestion, Option, Prediction, Sketch
+from onpath.lessons.schema import Derivation, NumberQuestion, Option, Prediction, Shape, Sketch
 from onpath.lessons.task_schema import (
     Better,
     Bound,
@@ -50,8 +50,20 @@ def prediction_faults(prediction: Prediction) -> Iterator[str]:
         low, high = prediction.bottom, prediction.top
         if not -HIGHEST <= low < high <= HIGHEST:
             yield f"top = {high:g} must be above bottom = {low:g}, both within ±{HIGHEST:g}"
+        for shape in prediction.shapes:
+            yield from _shape_faults(shape, prediction)
     else:
         yield from option_faults(prediction.options)
+
+
+def _shape_faults(shape: Shape, sketch: Sketch) -> Iterator[str]:
+    if not shape.name.strip() or shape.without_words == (None, None, ()):
+        yield f"shape {shape.name!r}: it needs a name, and a feature"
+    ranges = [*filter(None, (shape.peaks, shape.highest)), *(each[1:] for each in shape.at)]
+    if any(low > high for low, high in ranges):
+        yield f"shape {shape.name!r}: each range is from less to more"
+    if any(not 0 <= time <= sketch.seconds for time, *_ in shape.at):
+        yield f"shape {shape.name!r}: a time is within the {sketch.seconds:g} s of the axis"
 
 
 def number_faults(question: NumberQuestion) -> Iterator[str]:
