@@ -14,7 +14,7 @@ from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loop_vectors import GAINS, LoopLayouts
 from onpath.models.closed_loop.speed_profile import Leg
 from onpath.models.control import composite_control
-from onpath.models.control.bend_limit import bend_limit, most_turning
+from onpath.models.control.bend_limit import most_turning
 from onpath.models.control.implicit_level import check_level, implicit_level
 from onpath.models.control.laws.law import PLAN
 from onpath.models.control.laws.own import is_text
@@ -210,17 +210,6 @@ def _drawn(curve: Curve) -> dict[str, float]:
         return {}
     turning = most_turning(curve)
     return {"pieces": curve.pieces, "duration": curve.duration, "turning": turning}
-
-
-def speed_on(parameters: Parameters, curve: Curve) -> float:
-    """The wanted speed of θ, [rad/s].
-
-    That of a drawing is for its usual duration, and at most what its bends allow.
-    """
-    if not isinstance(curve, SplineCurve):
-        return parameters.speed
-    wanted, limit = parameters.speed / curve.duration, bend_limit(parameters, curve)
-    return min(max(wanted, -limit), limit)
 
 
 def _plan(robot: Robot, law: str, parameters: Parameters, curve: Curve) -> Array:

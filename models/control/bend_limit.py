@@ -7,11 +7,23 @@ from typing import Any
 
 import casadi as ca
 
+from onpath.models.paths.curves import Curve
 from onpath.models.paths.spline_curves import SplineCurve
 from onpath.models.systems.parameters import Parameters
 
 TURN = 0.15  # [rad], largest turn of the tangent in a control interval
 PER_PIECE = 8  # places at which the turning is taken
+
+
+def speed_on(parameters: Parameters, curve: Curve) -> float:
+    """The wanted speed of θ, [rad/s].
+
+    That of a drawing is for its usual duration, and at most what its bends allow.
+    """
+    if not isinstance(curve, SplineCurve):
+        return parameters.speed
+    wanted, limit = parameters.speed / curve.duration, bend_limit(parameters, curve)
+    return min(max(wanted, -limit), limit)
 
 
 def bend_limit(parameters: Parameters, curve: SplineCurve) -> float:

@@ -9,6 +9,7 @@ import casadi as ca
 import numpy as np
 
 from onpath.models.arrays import Array
+from onpath.models.control.bend_limit import speed_on
 from onpath.models.paths.curves import PERIOD, Curve
 from onpath.models.paths.spline_curves import SplineCurve
 from onpath.models.systems.parameters import Parameters
@@ -27,6 +28,7 @@ class Place:
     Attributes:
         theta: θ, [rad].
         rate: θ' of the end-point, [rad/s].
+        speed: wanted speed of θ, [rad/s]; 0 if a position is wanted.
         turn: Ω per radian of θ, skew: the axes A = (T, N) or (T, n1, n2) of the path turn as
             dA/dθ = A Ω, (2, 2) or (3, 3).
         turns_evenly: whether Ω is the same at all places of the path.
@@ -37,6 +39,7 @@ class Place:
 
     theta: float
     rate: float
+    speed: float
     turn: Array
     turns_evenly: bool
     slope: float = 0.0
@@ -63,6 +66,7 @@ def place_at(
     return Place(
         theta=theta,
         rate=rate,
+        speed=speed_on(parameters, curve) if parameters.task == "speed" else 0.0,
         turn=_turn(curve, at)[0],
         turns_evenly=_turns_evenly(curve),
         slope=slope,

@@ -33,9 +33,9 @@ from onpath.models.closed_loop.simulation import (
     kind_of,
     pushed,
     settings_vector,
-    speed_on,
 )
 from onpath.models.closed_loop.start import driven_rates
+from onpath.models.control.bend_limit import speed_on
 from onpath.models.control.forecast import check_possible
 from onpath.models.control.laws.registry import LAWS, law_named
 from onpath.models.control.settable import values_of

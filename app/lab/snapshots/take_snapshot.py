@@ -32,7 +32,7 @@ from onpath.lessons.progress import Truth
 from onpath.lessons.schema import Sketch
 from onpath.lessons.words import Words
 from onpath.models.arrays import Array
-from onpath.models.closed_loop.simulation import speed_on
+from onpath.models.control.bend_limit import speed_on
 from onpath.models.control.settable import values_of
 from onpath.models.control.sides import RIGHT
 from onpath.models.paths.curve_fit import FAR

@@ -149,7 +149,7 @@ def contouring_channels(parameters: Parameters, place: Place) -> tuple[Channel, 
     along = channel("along", parameters, (ratio * k1, ratio**0.5 * k2, 0.0), "xva")
     if parameters.K3 == 0 or parameters.tracker_integral == "off":
         return channel("across", parameters, (k1, k2, 0.0), "xva"), along
-    rate = parameters.speed if parameters.task == "speed" else 0.0
+    rate = place.speed
     at = float("nan") if place.turns_evenly or rate == 0 else place.theta
     gains = k1, k2, parameters.K3
     if not (place.turn * rate).any():

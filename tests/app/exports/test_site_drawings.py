@@ -21,7 +21,7 @@ from onpath.app.view.label_geometry import label_function
 from onpath.lessons.course import BUILT_IN, read_course
 from onpath.lessons.words import ENGLISH
 from onpath.models.arrays import Array
-from onpath.models.closed_loop.simulation import speed_on
+from onpath.models.control.bend_limit import speed_on
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.robots import Robot
 from tests.support.cases import drawn

@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 
 from onpath.models.closed_loop.loop_vectors import loop_layouts
 from onpath.models.closed_loop.reference_speed import kept_speed
-from onpath.models.closed_loop.simulation import FREE, kind_of, settings_vector, speed_on
+from onpath.models.closed_loop.simulation import FREE, kind_of, settings_vector
+from onpath.models.control.bend_limit import speed_on
 from onpath.models.paths.curves import circle
 from onpath.models.systems.catalogue import ROBOTS
 from tests.support.drawings import scrawl

@@ -25,6 +25,7 @@ from onpath.models.closed_loop.simulation import (
     settings_vector,
 )
 from onpath.models.closed_loop.start import velocity_at
+from onpath.models.control.bend_limit import speed_on
 from onpath.models.control.law_poles import channels_of
 from onpath.models.control.place import place_at
 from onpath.models.control.poles import Channel, Complex
@@ -34,9 +35,10 @@ from onpath.models.paths.distance import closest_parameter
 from onpath.models.paths.space_curves import saddle
 from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS, RobotEntry
 from onpath.models.systems.parameters import Parameters, rise_of
+from tests.support.drawings import star
 
 DT, SMALL = 1e-3, 1e-6
-CIRCLE, ELLIPSE = circle(0.05), ellipse((0.07, 0.045))
+CIRCLE, ELLIPSE, STAR = circle(0.05), ellipse((0.07, 0.045)), star()
 Coordinates = Callable[[Array], Array]
 
 
@@ -179,17 +181,19 @@ GAINS: list[dict[str, Any]] = [
 
 @pytest.mark.parametrize("gains", GAINS)
 @pytest.mark.parametrize("integral", ["off", "on"])
-@pytest.mark.parametrize(("curve", "theta"), [(CIRCLE, 0.3), (ELLIPSE, 0.3), (ELLIPSE, 1.2)])
+@pytest.mark.parametrize(
+    ("curve", "theta"), [(CIRCLE, 0.3), (ELLIPSE, 0.3), (ELLIPSE, 1.2), (STAR, 0.55)]
+)
 def test_contouring(curve: Curve, theta: float, integral: str, gains: dict[str, Any]) -> None:
     values = with_values(
         FIVE_BAR.parameters(), {"tracker_integral": integral, "speed": 5.0, **gains}
     )
-    loop = Linearized("contouring", curve, theta, values, 5.0)
+    loop = Linearized("contouring", curve, theta, values, speed_on(values, curve))
     sums = 2 if integral == "on" and gains["K3"] else 0
     across, along = channels_there(loop)
     expected = sorted_poles(np.concatenate([across.poles, along.poles]))
     assert sorted_poles(loop.roots(loop.in_axes, sums)) == pytest.approx(expected, rel=2e-3)
-    varies = bool(sums) and curve is ELLIPSE
+    varies = bool(sums) and curve is not CIRCLE
     assert across.at == (pytest.approx(theta + loop.rate * DT / 2, abs=1e-4) if varies else None)
 
 
