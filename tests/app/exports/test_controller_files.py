@@ -121,6 +121,9 @@ class InC:
     def follow(self, path: int) -> None:
         self._library.law_follow(self._place(self._memory), ctypes.c_int(path))
 
+    def stop(self) -> None:
+        self._library.law_stop(self._place(self._memory))
+
     def start(self, t: float, q: Array, v: Array | None, theta: float) -> None:
         times = ctypes.c_double(t), self._place(q), self._place(v), ctypes.c_double(theta)
         self._library.law_start(self._place(self._memory), *times)
@@ -165,6 +168,7 @@ EVENTS = st.one_of(
     st.tuples(st.just("speed"), st.just(0), st.integers(-5, 5)),
     st.tuples(st.just("K1"), st.just(0), st.integers(0, 2000)),
     st.tuples(st.just("follow"), st.integers(0, 1), st.just(0.0)),
+    st.tuples(st.just("stop"), st.just(0), st.just(0.0)),
 )
 
 
@@ -207,6 +211,9 @@ def test_c_does_what_python_does_whatever_happens(
             theta = follow_both(in_c, controller, names, place)
             assert math.isfinite(theta)
             start_both(in_c, controller, t, q)  # at the same θ, to the last bit
+        elif kind == "stop":
+            controller.stop()
+            in_c.stop()
         torque, code = in_c.step(t, q, v if measures else None)
         assert np.array_equal(controller.step(t, q, v if measures else None), torque)
         assert controller.code == code and np.isfinite(torque).all()

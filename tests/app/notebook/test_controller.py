@@ -243,6 +243,31 @@ def test_a_bad_measurement_is_refused_for_good_with_the_chosen_torque(
     assert controller.code == 0 and controller.step(t + 0.002, q, [0.0, 0.0]).any()
 
 
+@pytest.mark.parametrize("at_fault", AT_FAULT)
+def test_it_is_stopped_for_good_from_outside(at_fault: str) -> None:
+    controller, q, last = started(at_fault=at_fault)
+    controller.stop()
+    controller.stop("late")  # the first reason stays
+    given = controller.step(0.05, q, [1.0, 0.0])
+    assert controller.code == CODE["stopped"] and controller.reason
+    if at_fault == "damp":
+        assert given[0] < 0
+    else:
+        assert np.array_equal(given, last if at_fault == "hold" else np.zeros(2))
+    with pytest.raises(ValueError, match="started"):
+        onpath.controller(**ARM).stop()
+    with pytest.raises(ValueError, match="late"):
+        controller.stop("lat")
+
+
+def test_a_joint_that_jumps_farther_than_its_limit_allows_is_refused() -> None:
+    """In 1 ms and 10 ms more, it moves 22 mrad at 2 rad/s; a measured velocity tells nothing."""
+    for share, code in ((0.95, 0), (1.05, CODE["jump"])):
+        controller, q, _ = started(fastest=2.0, speed=0.5)
+        controller.step(0.05, q + share * 2.0 * 0.011, [0.0, 0.0])
+        assert controller.code == code
+
+
 def test_a_joint_that_is_faster_than_allowed_is_refused() -> None:
     """The observer's velocities count where none are measured."""
     log = lab_log(**ARM, law="path_following", **RUN)
