@@ -8,6 +8,7 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
+from onpath.app.cli.assignments import assignments
 from onpath.app.cli.options import Repeated
 from onpath.app.cli.robot_options import NO_OPTIONS, FileOptions
 
@@ -29,6 +30,9 @@ class ArenaCommand:
     """Your law, as my_law.py:Name, or typed, as "across = …; along = …"; repeat for more."""
     only: bool = False
     """Compare only the laws given, which may also be names of OnPath's laws."""
+    set: Repeated = ()
+    """Set any parameter of the robots in all trials, as name=value, or @FILE of onpath identify
+    --json; repeat for more. What a trial draws takes its place."""
     rounds: int = 3
     """Number of rounds."""
     seed: int = 1
@@ -63,6 +67,7 @@ class ArenaCommand:
             laws=[law_given(text) for text in self.law],
             robots=self.file_options.names_of(self.robot or ROBOT_NAMES),
             only=self.only,
+            settings=assignments(self.set),
             rounds=self.rounds,
             seed=self.seed,
             processes=self.processes,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
@@ -43,6 +43,7 @@ class ArenaOptions:
         laws: names of the laws that enter besides OnPath's.
         robots: their names.
         only: whether OnPath's laws that were not asked for are left out.
+        settings: parameters of the robots in all trials, by name.
         rounds: their number, 1 or more.
         seed: of the random numbers, 0 or more.
         processes: number of processes; 0: what joblib is set to, or one for each processor.
@@ -57,6 +58,7 @@ class ArenaOptions:
     laws: Sequence[str]
     robots: Sequence[str]
     only: bool
+    settings: Mapping[str, Any]
     rounds: int
     seed: int
     processes: int
@@ -87,11 +89,12 @@ class Arena:
         _check_gains(options.laws)
         self._options, self._words = options, Words(options.language)
         self._rows = {robot: self._entrants(robot) for robot in options.robots}
-        self._trials = trials_of(tuple(self._rows), options.rounds, options.seed)
+        self._trials = trials_of(tuple(self._rows), options.rounds, options.seed, options.settings)
         for robot in self._rows:
             first = next(trial for trial in self._trials[0] if trial.robot == robot)
+            experiment = first.experiment(remedy=False)
             for law in options.laws:
-                check_own_law(first.experiment(remedy=False), law)
+                check_own_law(experiment, law)
         self._results, self._kept = list[Result](), ResultFolder(options.folder)
         self._figures = dict[tuple[str, str], str]()
 

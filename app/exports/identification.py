@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,7 @@ from onpath.lessons.words import ENGLISH, Words
 from onpath.models.studies.linear_model import BaseParameter
 from onpath.models.studies.log_identification import FileEstimate
 
-DRY = re.compile(r"c\d+")  # the dry friction of a motor
+SETTINGS = "settings"  # name of what `--set @FILE` reads
 MUCH = 0.1  # unexplained share of the torque above which the table warns
 
 
@@ -31,6 +30,7 @@ def identification_data(found: FileEstimate) -> dict[str, Any]:
         "unexplained_in": {name: float(f"{x:.3g}") for name, x in found.others.items()},
         "torque_late_s": None if late is None else float(f"{late.value:.3g}"),
         "torque_late_interval_s": None if late is None else _interval(late),
+        SETTINGS: found.settings,
         "motion": None
         if motion is None
         else {
@@ -108,7 +108,7 @@ def remarks(found: FileEstimate) -> list[str]:
         " torques and forces, forces that are not in the file, and terms that the model lacks."
         " Of friction where motors are slow or turn round, nothing is assumed."
     )
-    dry = [each for each in result.found if DRY.fullmatch(each.label())]
+    dry = [each for each in result.found if each.is_dry_friction]
     negative = [each.name for each in dry if each.high < 0]
     doubts = ["too much of the torque is not explained"] if result.unexplained > MUCH else []
     doubts += [f"dry friction is never negative, but {' and '.join(negative)}"] if negative else []

@@ -66,6 +66,7 @@ def arena(
     csv: str | Path | None = None,
     figures: bool = True,
     language: str = "en",
+    **settings: float | str,
 ) -> ArenaResult:
     """Run all control laws, and yours, through the same trials, as `onpath arena` does.
 
@@ -87,6 +88,8 @@ def arena(
         figures: whether a live figure of each law on each robot is written, in a folder beside the
             page.
         language: of the page and of the tables.
+        settings: any of `onpath.parameters(robot)` by name, in all trials, such as coulomb=0.03;
+            what a trial draws takes its place.
 
     Raises:
         ValueError: an unknown name, an invalid number, a law that does not suit a robot or has an
@@ -102,12 +105,13 @@ def arena(
             raise ValueError(f"arena: {each!r:.60} is a law: arena(law=…)")
     names = [law_of(each) for each in laws]
     entries = [entry_named(each).name for each in robots]
-    given = {"robot": entries, "only": only, "rounds": rounds, "seed": seed}
+    given = {"robot": entries, "only": only, "rounds": rounds, "seed": seed, **settings}
     told = ", ".join([f"law={names!r}", *(f"{name}={value!r}" for name, value in given.items())])
     options = ArenaOptions(
         laws=names,
         robots=entries,
         only=only,
+        settings=settings,
         rounds=rounds,
         seed=seed,
         processes=processes,

@@ -48,6 +48,15 @@ class IdentificationResult:
         return None if late is None else late.value
 
     @property
+    def settings(self) -> dict[str, float]:
+        """Friction and delay, for `onpath.simulate(..., **result.settings)` and `onpath.arena`.
+
+        `coulomb` is the mean of the motors' dry friction, [N m]. `delay` is that of torques that
+        were logged before they acted, in control intervals of 1 ms.
+        """
+        return self.found.settings
+
+    @property
     def unexplained(self) -> dict[str, float]:
         """Share of the torque in each file of `validate` that the values do not explain."""
         return dict(self.found.others)

@@ -13,6 +13,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from types import MappingProxyType
 from typing import Any
 from zlib import crc32
 
@@ -43,6 +44,7 @@ LASTS, RATE = 5.0, 2.0  # duration of a pull, [s], and growth of its force, [N/s
 ACTS, AFTER = 1.0, 2.0  # duration of the other obstructions, and of the run after them, [s]
 EVERY = 20  # [ms] between the points of a run that is shown
 MOST_LOOPS = 16
+NO_SETTINGS: Mapping[str, Any] = MappingProxyType({})
 
 Row = tuple[str, bool | None]
 """A row of the table: a law, and whether the remedy acts; None if it commands torques."""
@@ -64,7 +66,7 @@ class Trial:
     path: str
     obstruction: str
     condition: str
-    values: Mapping[str, float]
+    values: Mapping[str, Any]
     released: float | None
 
     def settings(self, remedy: bool) -> dict[str, Any]:
@@ -161,7 +163,9 @@ class Cell:
     of: int | None
 
 
-def trials_of(robots: Sequence[str], rounds: int, seed: int) -> list[list[Trial]]:
+def trials_of(
+    robots: Sequence[str], rounds: int, seed: int, settings: Mapping[str, Any] = NO_SETTINGS
+) -> list[list[Trial]]:
     """The trials of each round: every obstruction of every robot once.
 
     The first round is on the circle with an exact model. Paths and conditions of the other rounds
@@ -170,9 +174,10 @@ def trials_of(robots: Sequence[str], rounds: int, seed: int) -> list[list[Trial]
 
     Args:
         seed: 0 or more.
+        settings: parameters of the robots in all trials, by name, unless a trial draws them.
 
     Raises:
-        ValueError: a robot that can follow none of the paths.
+        ValueError: an unknown parameter, or a robot that can follow none of the paths.
     """
     found, number = list[list[Trial]](), 0
     for round_number in range(rounds):
@@ -181,7 +186,8 @@ def trials_of(robots: Sequence[str], rounds: int, seed: int) -> list[list[Trial]
             for which, obstruction in enumerate(OBSTRUCTIONS):
                 numbers = [seed, crc32(robot.encode()), round_number, which]
                 draw, number = np.random.default_rng(numbers), number + 1
-                trials.append(_trial(number, robot, obstruction, draw, plain=round_number == 0))
+                trial = _trial(number, robot, obstruction, draw, plain=round_number == 0)
+                trials.append(dataclasses.replace(trial, values={**settings, **trial.values}))
         found.append(trials)
     return found
 

@@ -97,6 +97,11 @@ class BaseParameter:
     high: float
     others: tuple[tuple[str, float], ...] = ()
 
+    @property
+    def is_dry_friction(self) -> bool:
+        """Whether it is the dry friction of a motor alone."""
+        return not self.others and self.name[:1] == "c" and self.name[1:].isdigit()
+
     def label(self) -> str:
         """For instance "a1 + 0.0484 g2"."""
         parts = (f" {'-' if c < 0 else '+'} {abs(c):.3g} {name}" for name, c in self.others)

@@ -44,6 +44,21 @@ class FileEstimate:
     motion: ExcitingMotion | None
     others: Mapping[str, float]
 
+    @property
+    def settings(self) -> dict[str, float]:
+        """Settings with which a robot is simulated with this friction and delay.
+
+        `coulomb` is the mean of the motors' dry friction. `delay` is that of torques that were
+        logged before they acted, in control intervals of 1 ms; torques that were logged late say
+        nothing of the controller.
+        """
+        dry = [each.value for each in self.estimate.found if each.is_dry_friction]
+        late = self.estimate.delay
+        found = {"coulomb": max(sum(dry) / len(dry), 0.0)} if dry else {}
+        if late is not None and late.high < 0:
+            found["delay"] = -1e3 * late.value
+        return {name: float(f"{value:.4g}") for name, value in found.items()}
+
 
 def identify_file(
     path: Path,

@@ -67,15 +67,16 @@ def slow_friction(
         held: integrals of a window over its time steps.
     """
     from scipy.sparse import csr_array, eye_array, hstack, vstack  # slow to import
-    from scipy.sparse.linalg import splu
+    from scipy.sparse.linalg import factorized
 
     rows, n, m = motors.shape
     windows, length = len(starts), len(held)
     ends = np.arange(0, (windows + 1) * length, length)
     places = (starts[:, None] + np.arange(length)).ravel()
     integral = csr_array((np.tile(held, windows), places, ends), shape=(windows, rows))
-    effects = [csr_array((windows * n, 0))]
-    by_window = np.arange(windows * n).reshape(n, windows).T.ravel()
+    effects: list[Any] = [csr_array((windows * n, 0))]
+    order: NDArray[np.int_] = np.arange(windows * n, dtype=np.int_)
+    by_window = order.reshape((n, windows)).T.ravel()
     for k in range(m):
         inside, stretch = _stretches(slow[:, k], dt)
         if inside.size:
@@ -91,7 +92,7 @@ def slow_friction(
     if not effect.shape[1]:
         return SlowFriction(effect, None)
     small = NEARLY * square.diagonal().max() * eye_array(effect.shape[1], format="csc")
-    return SlowFriction(effect, splu(square + small).solve)
+    return SlowFriction(effect, factorized(square + small))
 
 
 def slow_rows(rates: Array, bounds: Array, dt: float) -> NDArray[np.bool_]:
@@ -105,7 +106,9 @@ def slow_rows(rates: Array, bounds: Array, dt: float) -> NDArray[np.bool_]:
 
     slow = np.abs(rates) < bounds
     slow[1:] |= rates[1:] * rates[:-1] < 0
-    return binary_dilation(slow, np.ones((3, 1)), iterations=max(1, round(AROUND / dt)))
+    return binary_dilation(
+        slow, np.ones((3, 1), dtype=np.int_), iterations=max(1, round(AROUND / dt))
+    )
 
 
 def _stretches(slow: NDArray[np.bool_], dt: float) -> tuple[NDArray[np.int_], NDArray[np.int_]]:

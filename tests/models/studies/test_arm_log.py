@@ -177,7 +177,7 @@ def test_the_log_of_the_examples_gives_the_arm_of_which_it_is(
     """The command of models/studies/README.md; assets/examples/make_arm_log.py has the truth."""
     text = (ROOT / "models" / "studies" / "README.md").read_text("utf-8")
     (block,) = [each for each in text.split("```sh") if "assets/examples/arm.csv" in each]
-    program, *command = shlex.split(block.split("```")[0].replace("\\\n", " "))
+    program, *command = shlex.split(block.split("```")[0])
     command = [each.replace("assets", str(ROOT / "assets")) for each in command]
     assert program == "onpath" and run_command([*command, "--json"]) == 0
     data = json.loads(capsys.readouterr().out)
@@ -185,6 +185,7 @@ def test_the_log_of_the_examples_gives_the_arm_of_which_it_is(
     told = {each["name"]: each["interval"] for each in data["parameters"]}
     for name, value in (true | dict.fromkeys(("M12", "G1", "G2"), 0.0)).items():
         assert told[name][0] <= value <= told[name][1], name
+    assert set(data["settings"]) == {"coulomb"}  # torques that are logged late are no delay
     low, high = data["torque_late_interval_s"]
     assert low <= 0.0128 <= high
 
