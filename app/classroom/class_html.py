@@ -245,6 +245,27 @@ def dots_view(states: Sequence[str], words: Words) -> str:
     return render("class/dots.html", dots=shown, counts=counts)
 
 
+def moves_view(
+    block: Prediction, moves: Mapping[tuple[int, int], int], words: Words, large: bool = False
+) -> str:
+    """From which answers students went to which by a discussion; empty if nobody answered twice.
+
+    Args:
+        moves: see `app.classroom.results.moves`.
+    """
+    if isinstance(block, Choice):
+        names = list(LETTERS[: len(block.options)])
+    else:
+        names = [*(shape.name for shape in block.shapes), words("class.other_shape")]
+    groups = sorted({group for pair in moves for group in pair})
+    rows = [
+        (names[before], [moves.get((before, after), 0) for after in groups]) for before in groups
+    ]
+    heads = [names[group] for group in groups]
+    title = words("class.moves")
+    return render("class/moves.html", heads=heads, rows=rows, title=title, large=large)
+
+
 def step_view(title: str, remark: str, large: bool = False) -> str:
     """A step that asks nothing."""
     return render("class/step.html", title=title, remark=remark, large=large)

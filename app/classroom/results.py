@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from onpath.lessons.given import Answer, Given
 from onpath.lessons.kept.option_keys import second_key
+from onpath.lessons.measures.shapes import shape_of
 from onpath.lessons.progress import Notes, Progress, Truth, given_to
 from onpath.lessons.schema import Choice, Lesson, NumberQuestion, Prediction, Quiz, Step
 from onpath.lessons.votes import Vote, counted, is_late
@@ -120,6 +122,47 @@ def distribution(
             for of, one in both
         ),
     )
+
+
+def group_of(block: Prediction, given: Given | None) -> int | None:
+    """The place of the option that was chosen or of the shape that was drawn, or one more for a
+    curve without one; None if nothing was predicted, or the curves have no groups.
+    """
+    answer = None if given is None else given.answer
+    if answer is None or answer.skipped:
+        return None
+    if isinstance(block, Choice):
+        return answer.option
+    if not block.shapes or not answer.times:
+        return None
+    shape = shape_of(block, answer)
+    return len(block.shapes) if shape is None else block.shapes.index(shape)
+
+
+def moves(
+    block: Prediction,
+    lesson: str,
+    item: str,
+    students: Sequence[Progress],
+    votes: tuple[Vote | None, Vote | None],
+) -> dict[tuple[int, int], int]:
+    """How many went from one group to another by a discussion, or stayed in theirs.
+
+    Args:
+        votes: on the first answers, and on the second ones; None without one.
+
+    Returns:
+        Groups before and after, see `group_of`, -> number of students who answered both times.
+    """
+    found = Counter[tuple[int, int]]()
+    for notes in (_notes(each, lesson) for each in students):
+        before, after = (
+            group_of(block, counted(notes, item, vote, again))
+            for again, vote in zip((False, True), votes, strict=True)
+        )
+        if before is not None and after is not None:
+            found[before, after] += 1
+    return dict(found)
 
 
 def is_same(one: Given, other: Given) -> bool:

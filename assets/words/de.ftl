@@ -403,6 +403,8 @@ class-given =
         [0] { $given } von { $here } Anwesenden haben geantwortet.
        *[other] { $given } von { $here } Anwesenden haben geantwortet ({ $away } sind weg).
     }
+class-moves = Von der ersten Antwort (Zeilen) zur zweiten (Spalten)
+class-other_shape = etwas anderes
 class-drew = { $count }-mal { $name } (etwa Nummer { $example }).
 class-drew_other = { $count }-mal etwas anderes (etwa Nummer { $example }).
 class-skipped = { $count } haben übersprungen.

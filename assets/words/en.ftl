@@ -405,6 +405,8 @@ class-given =
         [0] { $given } of { $here } here have answered.
        *[other] { $given } of { $here } here have answered ({ $away } away).
     }
+class-moves = From the first answer (rows) to the second (columns)
+class-other_shape = something else
 class-drew = { $count } drew { $name } (such as { $example }).
 class-drew_other = { $count } drew something else (such as { $example }).
 class-skipped = { $count } skipped it.

@@ -18,6 +18,7 @@ from onpath.app.classroom.results import (
     distribution,
     is_asked_again,
     is_same,
+    moves,
     truth_of,
     votes_at,
 )
@@ -289,6 +290,11 @@ class ClassAnswers:
         view = page.prediction_view(
             block, first, truth, revealed, words, large, laws=laws, second=second, picks=picks
         )
+        if second is not None:
+            votes = self._teaching.classroom.votes
+            both = (vote_on(votes, lesson.name, item), vote_on(votes, lesson.name, item, True))
+            moved = moves(block, lesson.name, item, students.progress, both)
+            view += page.moves_view(block, moved, words, large) if moved else ""
         missing = revealed and not first.counts and truth is None
         return view + (page.remark(words("class.no_truth")) if missing else "")
 
