@@ -20,7 +20,7 @@ LINES = {
     "contouring_mpc": 35,
     "controller": 15,
     "make_arm_log": 21,
-    "plant": 63,
+    "plant": 64,
     "predictive_path_following": 60,
 }
 """The most lines of an example that needs more than the others."""

@@ -21,9 +21,10 @@ from typing import Any
 
 import numpy as np
 
+from onpath.app.common.end_signals import END_SIGNALS
 from onpath.app.notebook.controller import Controller, controller
 from onpath.app.plant.datagrams import LARGEST
-from onpath.app.plant.plant_link import PlantLink, PlantReport
+from onpath.app.plant.plant_link import SILENCE, PlantLink, PlantReport
 from onpath.models.paths.curves import Curve
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import RobotEntry
@@ -32,6 +33,7 @@ ASKED = 1.0  # [s] without a request, after which the process that asks counts a
 LINGER = 10.0  # [s] for which a lost process's controller still answers
 START = "spawn"  # so that it shares nothing with who starts it
 PATIENCE = 60.0  # [s] for the controllers to be made, or for an answer
+GONE = "the controller's process has ended: the plant gets no torque"
 Address = tuple[str, int]
 
 
@@ -44,6 +46,7 @@ class ControllerPlan:
         paths: by name; the first is followed first.
         laws: the first acts first.
         at_fault, fastest, settings: see there.
+        silence: of the plant, in control intervals, after which it ends.
     """
 
     robot: RobotEntry
@@ -52,6 +55,7 @@ class ControllerPlan:
     at_fault: str
     fastest: float
     settings: Mapping[str, Any] = field(default_factory=dict[str, Any])
+    silence: int = SILENCE
 
     def made(self) -> dict[str, Controller]:
         """The controllers by law."""
@@ -94,7 +98,7 @@ class ControllerProcess:
         self._process.start()
         theirs.close()
         try:
-            self.address: Address = self._answered(PATIENCE)
+            self.address: Address = self._answered()
         except BaseException:
             self.close()
             raise
@@ -108,7 +112,7 @@ class ControllerProcess:
         """What has happened. Without a report for `ASKED`, the controller ends.
 
         Raises:
-            EOFError: the process has ended.
+            OSError: the process has ended.
         """
         return self._ask("report")
 
@@ -143,13 +147,17 @@ class ControllerProcess:
         self._process.join()
 
     def _ask(self, what: str, *given: Any) -> PlantReport:
-        self._connection.send((what, given))
-        return self._answered(PATIENCE)
+        try:
+            self._connection.send((what, given))
+        except OSError:
+            raise OSError(GONE) from None
+        return self._answered()
 
-    def _answered(self, seconds: float) -> Any:
-        if not self._connection.poll(seconds):
-            raise EOFError("the controller's process does not answer")
-        answer = self._connection.recv()
+    def _answered(self) -> Any:
+        try:
+            answer = self._connection.recv() if self._connection.poll(PATIENCE) else OSError(GONE)
+        except (EOFError, OSError):
+            raise OSError(GONE) from None
         if isinstance(answer, Exception):
             raise answer
         return answer
@@ -157,7 +165,8 @@ class ControllerProcess:
 
 def serve(connection: Connection, plan: ControllerPlan, address: Address) -> None:
     """Answer a plant until nobody needs that any more; the main function of the process."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is handled by who has started it
+    for number in END_SIGNALS:  # of the terminal, say; who has started it handles them
+        signal.signal(number, signal.SIG_IGN)
     try:
         controllers = plan.made()
         _warm_up(plan.made())
@@ -168,7 +177,7 @@ def serve(connection: Connection, plan: ControllerPlan, address: Address) -> Non
             gc.collect()
             gc.disable()  # a collection would take longer than a control interval
             _come_first()
-            _Serving(connection, PlantLink(controllers), plant).run()
+            _Serving(connection, PlantLink(controllers, plan.silence), plant).run()
     except (ValueError, OSError) as error:
         connection.send(error)
 

@@ -11,7 +11,7 @@ from onpath.app.notebook.controller import Controller, GivenPath
 from onpath.app.plant.datagrams import Measured, measured_in, torque_datagram
 from onpath.models.systems.parameter_specs import unknown_name
 
-SILENCE = 2  # control intervals without a measurement, or by which one may be late
+SILENCE = 2  # control intervals
 DRIFT = 1e-3  # by which the clocks of plant and controller may differ
 
 
@@ -64,10 +64,11 @@ class PlantLink:
     Args:
         controllers: by the name of their law, at least one, which have not been started. They have
             the same robot, path and settings. The first one acts.
+        silence: control intervals without a measurement, or by which one may be late.
     """
 
-    def __init__(self, controllers: Mapping[str, Controller]) -> None:
-        self._controllers = controllers
+    def __init__(self, controllers: Mapping[str, Controller], silence: int = SILENCE) -> None:
+        self._controllers, self._silence = controllers, silence
         self._report = PlantReport(next(iter(controllers)))
         self._sender: Hashable = None
         self._last: Measured | None = None
@@ -84,7 +85,7 @@ class PlantLink:
         """When the silence of the plant ends it, [s] of the given times; None: it cannot."""
         if self._last is None or self.ended:
             return None
-        return self._heard + SILENCE * self._acting.interval
+        return self._heard + self._silence * self._acting.interval
 
     @property
     def started(self) -> bool:
@@ -181,7 +182,7 @@ class PlantLink:
             self._offset = offset
         elif last.t < given.t < np.inf:
             self._offset = min(offset, self._offset + DRIFT * (now - self._heard))
-            if offset - self._offset > SILENCE * acting.interval:
+            if offset - self._offset > self._silence * acting.interval:
                 acting.stop("late")
         torque = acting.step(given.t, given.q, given.v)
         self._last, self._heard = given, now

@@ -15,6 +15,7 @@ options.add_argument("--rate", type=float, default=250.0, help="measurements in 
 options.add_argument("--seconds", type=float, default=3600.0)
 options.add_argument("--fast", action="store_true", help="as fast as torques come")
 options.add_argument("--fault", default="", help="hesitate, die, lie, jump, twice, back, second")
+options.add_argument("--pause", type=float, default=0.1, help="seconds for which it hesitates")
 options.add_argument("--at", type=float, default=1.0, help="time of the fault, in seconds")
 given = options.parse_args()
 robot = Path(__file__).parents[1] / "robots" / "planar_arm.urdf"
@@ -25,7 +26,7 @@ data.qpos[:] = 0.6985, 1.031, 1.007
 n, interval = model.nv, 1 / given.rate
 link, stranger = (socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(2))
 link.connect(("127.0.0.1", given.port))
-link.settimeout(2 * interval)
+link.settimeout(1.0 if given.fast else 2 * interval)
 
 
 def measurement(sequence: int, q: np.ndarray) -> bytes:
@@ -49,7 +50,7 @@ for sequence in range(round(given.seconds * given.rate)):
     now = given.fault.split(",") if data.time > given.at - 1e-9 else []
     q = data.qpos + (0.2 if "jump" in now else np.nan if "lie" in now else 0)
     if "hesitate" in now and code == 0:
-        time.sleep(5 * interval)
+        time.sleep(given.pause)
     if "die" in now:
         break
     link.send(measurement(sequence, q))

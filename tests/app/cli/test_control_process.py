@@ -54,6 +54,7 @@ def beside() -> Iterator[ControllerProcess]:
         at_fault="damp",
         fastest=5.0,
         settings=settings,
+        silence=40,  # 0.8 s, since a busy machine lets both wait
     )
     process = ControllerProcess(plan, ("127.0.0.1", 0))
     yield process
@@ -63,8 +64,8 @@ def beside() -> Iterator[ControllerProcess]:
 def plant(beside: ControllerProcess, fault: str, rate: int = RATE) -> subprocess.Popen[str]:
     """An arm in MuJoCo that does something else after a second, for a fifth of a second."""
     example = [sys.executable, str(asset_path("examples/plant.py")), "--fast", "--rate", str(rate)]
-    given = ["--port", str(beside.address[1]), "--seconds", "1.2", "--at", "1", "--fault", fault]
-    return subprocess.Popen([*example, *given], stdout=subprocess.PIPE, text=True)
+    given = ["--port", str(beside.address[1]), "--seconds", "1.2", "--at", "1", "--pause", "1.2"]
+    return subprocess.Popen([*example, *given, "--fault", fault], stdout=subprocess.PIPE, text=True)
 
 
 def ended(beside: ControllerProcess, running: subprocess.Popen[str]) -> PlantReport:
@@ -116,6 +117,15 @@ def test_a_process_that_asks_no_more_is_missed(beside: ControllerProcess, gone: 
             arm.send(measurement(Measured(count + 1, (count + 1) / RATE, place, moving)))
             answer = torque_in(arm.recv(2048), 3) or answer
     assert answer[1] == CODE["`STOPPED`"] and answer[2][0] < 0
+
+
+@pytest.mark.usefixtures("forked")
+def test_a_controller_that_is_killed_is_missed(beside: ControllerProcess) -> None:
+    beside._process.kill()
+    beside._process.join()
+    for ask in (beside.report, beside.stop):
+        with pytest.raises(OSError, match="gets no torque"):
+            ask()
 
 
 @pytest.mark.usefixtures("forked")
