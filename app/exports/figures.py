@@ -165,15 +165,16 @@ def _draw_space(axes: Axes, experiment: Experiment, runs: list[Trajectory]) -> N
     if given is not None:
         axes.plot(*(1e3 * given.T), color="0.5", linewidth=0.8, linestyle="--", label="given")
     for run in runs:
-        z = 1e3 * frame.planar(run.fields["y"])
-        axes.plot(
-            *z.T,
-            color=_colour(run).hex,
-            linewidth=1.6,
-            label=run.label,
+        z, theta, colour = (
+            1e3 * frame.planar(run.fields["y"]),
+            run.fields["theta"],
+            _colour(run).hex,
         )
-        axes.plot(*z[0], "o", color=_colour(run).hex, markersize=6)
-        axes.plot(*z[-1], "s", color=_colour(run).hex, markersize=7)
+        raised = np.isfinite(theta) & ~curve.draws(theta)
+        axes.plot(*np.where(raised, np.nan, z).T, color=colour, linewidth=1.6, label=run.label)
+        axes.plot(*np.where(raised, z, np.nan).T, ":", color=colour, linewidth=0.8, alpha=0.6)
+        axes.plot(*z[0], "o", color=colour, markersize=6)
+        axes.plot(*z[-1], "s", color=colour, markersize=7)
     axes.plot([], [], "o", color="0.3", label="start")
     axes.plot([], [], "s", color="0.3", label="end")
     if any(run.held.any() for run in runs):

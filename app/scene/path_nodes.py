@@ -106,6 +106,7 @@ class PathNodes:
         if len(points) > 1:
             pieces = np.stack([points[:-1], points[1:]], axis=1).reshape(-1, 3)
             segments = self._everywhere(pieces).reshape(-1, 2, 3)
+            segments = segments[np.isfinite(segments).all(axis=(1, 2))]  # not between strokes
             colour = palette.WARNING.rgb
             self._given = self._scene.add_line_segments("/path/given", segments, colour)
 

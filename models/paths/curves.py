@@ -44,7 +44,8 @@ class Curve(ABC):
         deviation: largest distance between the curve and the straight lines between the points to
             which it was fitted, [m]; 0 if it was not fitted.
         given: these points, thinned if there are very many, shape (n, 2), [m]; those of a closed
-            curve end with the first one. None if it was not fitted.
+            curve end with the first one, and there is a row of NaN between those of two strokes.
+            None if it was not fitted.
     """
 
     closed: bool
@@ -63,7 +64,9 @@ class Curve(ABC):
         z = np.concatenate(strokes)
         (left, top), (width, height) = z.min(0) - 5, np.ptp(z, axis=0) + 10
         x, y = 1e3 * self.at(np.array(self.begin))[:2] * (1, -1)
-        lines = [] if self.given is None else [_polyline(1e3 * self.given * (1, -1), "2")]
+        given = np.empty((0, 2)) if self.given is None else 1e3 * self.given * (1, -1)
+        parts = np.split(given, np.flatnonzero(np.isnan(given[:, 0])))
+        lines = [_polyline(each[~np.isnan(each[:, 0])], "2") for each in parts if len(each)]
         lines += [_polyline(each) for each in strokes]
         return (
             f'<svg xmlns="http://www.w3.org/2000/svg" width="{2 * width:.0f}"'

@@ -513,5 +513,6 @@ def compared(curve: SplineCurve, lines: Sequence[Array]) -> SplineCurve:
     seen = curve.at(theta[curve.draws(theta)])
     distances = KDTree(dense).query(seen)[0], KDTree(seen).query(dense)[0]
     thin = sum(len(line) for line in lines) // DENSE + 1
-    given = np.vstack([line[::thin] for line in lines])
+    gap = np.full((1, 2), np.nan)
+    given = np.vstack([part for line in lines for part in (gap, line[::thin])][1:])
     return replace(curve, deviation=float(np.concatenate(distances).max()), given=given)

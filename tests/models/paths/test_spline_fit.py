@@ -156,3 +156,13 @@ def test_more_points_of_the_same_lines_change_nothing(seed: int) -> None:
 def test_what_is_no_line_is_refused(strokes: list[Array]) -> None:
     with pytest.raises((CodedError, ValueError)):
         spline_through(strokes)
+
+
+def test_what_was_given_has_no_lines_between_strokes() -> None:
+    strokes = [np.array([[-0.05, y], [0.05, y]]) for y in (-0.02, 0.0, 0.03)]
+    curve = spline_through(strokes)
+    assert curve.given is not None
+    steps = np.diff(curve.given, axis=0)
+    assert np.isnan(steps).any(axis=1).sum() == 2 * (len(strokes) - 1)
+    assert np.nanmax(np.abs(steps[:, 1])) == 0
+    assert "nan" not in curve._repr_svg_() and curve._repr_svg_().count("<polyline") == 6
