@@ -38,6 +38,9 @@ class IdentifyCommand:
     repeat for more."""
     plot: Path | None = None
     """Draw the torques and their residuals to this .png, .svg or .pdf file."""
+    motion: Path | None = None
+    """Write a motion to record next to this CSV file: about the same place, no faster, from rest to
+    rest, and where the robot is neither singular nor at a limit."""
     json: bool = False
     """Print the result as JSON."""
     file_options: FileOptions = NO_OPTIONS
@@ -45,17 +48,20 @@ class IdentifyCommand:
     def run(self) -> None:
         """Read, estimate, draw and print."""
         from onpath.app.cli.assignments import assignments
-        from onpath.app.common.atomic_file import check_plot, whole_file
+        from onpath.app.common.atomic_file import check_file, check_plot, whole_file
         from onpath.app.common.user_files import user_file
         from onpath.app.exports.figures import save
         from onpath.app.exports.identification import (
             identification_data,
             identification_text,
+            motion_text,
             residual_figure,
         )
+        from onpath.models.studies.exciting_motion import planned_motion
         from onpath.models.studies.log_identification import identify_file
 
         check_plot(self.plot)
+        check_file(self.motion, (".csv",), "--motion")
         entry, file = self.file_options.entry_of(self.robot), user_file(self.file)
         columns = assignments(self.column, "--column")
         units = assignments(self.unit, "--unit")
@@ -64,5 +70,9 @@ class IdentifyCommand:
         if self.plot:
             with whole_file(self.plot) as path:
                 save(residual_figure(found), path)
+        if self.motion:
+            motion = planned_motion(entry, found.centre, found.fastest)
+            with whole_file(self.motion) as path:
+                path.write_text(motion_text(entry, motion), encoding="utf-8")
         data = identification_data(found) if self.json else None
         print(json.dumps(data, indent=2) if self.json else identification_text(found))

@@ -8,8 +8,11 @@ import numpy as np
 
 from onpath.app.exports.figures import ShownFigure
 from onpath.lessons.words import ENGLISH, Words
+from onpath.models.closed_loop.trajectory import header
+from onpath.models.studies.exciting_motion import PlannedMotion
 from onpath.models.studies.linear_model import BaseParameter
 from onpath.models.studies.log_identification import FileEstimate
+from onpath.models.systems.robots import RobotEntry
 
 SETTINGS = "settings"  # name of what `--set @FILE` reads
 MUCH = 0.1  # unexplained share of the torque above which the table warns
@@ -131,6 +134,16 @@ def _advice(found: FileEstimate) -> str:
         f"a record in which {moving}{rest} swing about here, slowly and quickly at once, would"
         f" also tell {', '.join(motion.identified)}{left}"
     )
+
+
+def motion_text(entry: RobotEntry, motion: PlannedMotion) -> str:
+    """A motion as CSV, with times, coordinates and their rates."""
+    robot = entry.make(entry.parameters())
+    n, known = robot.system.n, header(robot)
+    rows = np.column_stack([motion.t, motion.q, motion.v])
+    names = ["t_s", *robot.system.coordinate_names, *known[2 + n : 2 + 2 * n]]
+    lines = [",".join(names), *(",".join(f"{x:.9g}" for x in row) for row in rows)]
+    return "\n".join([*lines, ""])
 
 
 def residual_figure(found: FileEstimate, words: Words = ENGLISH) -> ShownFigure:

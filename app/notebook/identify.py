@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from onpath.app.common.atomic_file import check_writable, whole_file
 from onpath.app.common.user_files import user_file
 from onpath.app.notebook.run import written
 from onpath.app.notebook.simulate import entry_named
 from onpath.models.studies.log_identification import FileEstimate, identify_file
-from onpath.models.systems.catalogue import ROBOTS, RobotEntry
+from onpath.models.systems.catalogue import ROBOTS, RobotEntry, robot_named
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -73,6 +74,24 @@ class IdentificationResult:
         from onpath.app.exports.identification import residual_figure
 
         return written(residual_figure(self.found), file)
+
+    def motion_to_csv(self, file: str | Path) -> None:
+        """Write a motion to record next: times, coordinates and their rates.
+
+        Of many random ones from rest to rest, about the same place and no faster, it is the one
+        that tells the most parameters, with the least condition number.
+
+        Raises:
+            ValueError: the robot cannot move there, or the file cannot be written.
+        """
+        from onpath.app.exports.identification import motion_text
+        from onpath.models.studies.exciting_motion import planned_motion
+
+        path, entry = Path(file).expanduser(), robot_named(self.found.robot)
+        check_writable(path)
+        motion = planned_motion(entry, self.found.centre, self.found.fastest)
+        with whole_file(path) as scratch:
+            scratch.write_text(motion_text(entry, motion), encoding="utf-8")
 
     def _repr_mimebundle_(self, **_: Any) -> dict[str, Any]:
         from onpath.app.notebook.display import identification_bundle  # slow to import

@@ -1598,6 +1598,7 @@ error-table_decimal_sign =
 error-record_of_another_robot = keine Aufzeichnung des Roboters { $robot }: { $reason }. Ist es die eines wirklichen Arms, so gib ihre Spalten an
 error-in_file = Datei { $file }: { $reason }
 error-record_without_laws = --law { $law }: { $file } hat keine Spalte law
+error-no_motion_there = { $robot }: Um den Ort dieser Aufzeichnung kann er nicht schwingen, denn dort ist ein Anschlag
 error-record_of_one_row = Zeile { $line }: eine einzelne Zeile eines Gesetzes ist keine Bewegung
 error-record_times = Zeile { $line }, Spalte { $column }: Die Zeiten wachsen nicht von Zeile zu Zeile: Sie sind vielleicht gerundet; speichere die Datei mit mehr Stellen
 error-record_gap = Zeile { $line }, Spalte { $column }: { $step } s vergehen ohne eine Zeile, erlaubt sind { $most } s: Teile die Datei dort

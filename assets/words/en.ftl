@@ -1181,6 +1181,7 @@ error-table_decimal_sign =
 error-record_of_another_robot = not a record of the robot { $robot }: { $reason }. If it is the log of a real arm, name its columns
 error-in_file = file { $file }: { $reason }
 error-record_without_laws = --law { $law }: { $file } has no column law
+error-no_motion_there = { $robot }: it cannot swing about the place of this record, which is at a limit
 error-record_of_one_row = line { $line }: a single row of a law is not a motion
 error-record_times = line { $line }, column { $column }: the times do not grow from row to row: they may have been rounded; save the file again with more digits
 error-record_gap = line { $line }, column { $column }: { $step } s pass without a row, and at most { $most } s may: cut the file there

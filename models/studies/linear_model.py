@@ -390,6 +390,24 @@ def dependent_names(
     return tuple(known[used[j]] for j in range(len(used)) if j not in moved or j in mixed)
 
 
+def conditioning(
+    system: MechanicalSystem, records: list[MotionRecord], geometry: Array
+) -> tuple[int, float]:
+    """Number of parameters, or sums of some, that motions tell, and the condition number of these.
+
+    The columns of the regressor have an rms of 1; what friction of slow motors hides is left out.
+
+    Args:
+        geometry: see `estimate`.
+    """
+    model = linear_model(system)
+    parts = [_equations(system, model, record, geometry) for record in records]
+    _, scaled, _ = _scaled(parts, range(parts[0].columns.shape[2]))
+    sizes = np.linalg.svd(scaled.reshape(-1, scaled.shape[-1]), compute_uv=False)
+    told = sizes[sizes > sizes[0] / WORST_CONDITION] if len(sizes) else sizes
+    return len(told), float(told[0] / told[-1]) if len(told) else np.inf
+
+
 def _significant(shares: Array) -> bool:
     return bool(np.any(np.abs(shares) > NEGLIGIBLE))
 

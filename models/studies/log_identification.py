@@ -6,6 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
+from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
 from onpath.models.studies.exciting_motion import ExcitingMotion, exciting_motion
 from onpath.models.studies.linear_model import (
@@ -32,6 +35,8 @@ class FileEstimate:
         measured: whether the angles are sensor readings.
         estimate: of the parameters and the delay.
         motion: a motion that would identify what the file does not, or None.
+        centre: mean of the coordinates, (n,).
+        fastest: largest rate of each coordinate, (n,).
         others: share of the torque that the estimate does not explain in other files, by name.
     """
 
@@ -42,6 +47,8 @@ class FileEstimate:
     measured: bool
     estimate: Estimate
     motion: ExcitingMotion | None
+    centre: Array
+    fastest: Array
     others: Mapping[str, float]
 
     @property
@@ -96,6 +103,8 @@ def identify_file(
         measured=all(each.measured for each in used),
         estimate=result,
         motion=exciting_motion(robot.system, used, plant, names),
+        centre=np.mean(np.concatenate([each.q for each in used]), axis=0),
+        fastest=np.max([np.abs(each.v).max(axis=0) for each in used], axis=0),
         others={
             str(each): unexplained_of(
                 robot.system, result, _records(each, robot, log, law)[1], plant

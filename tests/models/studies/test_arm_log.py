@@ -15,7 +15,8 @@ from onpath.app.cli.main import run_command
 from onpath.app.exports.identification import identification_data
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
-from onpath.models.studies.linear_model import dependent_names
+from onpath.models.studies.exciting_motion import planned_motion
+from onpath.models.studies.linear_model import MotionRecord, conditioning, dependent_names
 from onpath.models.studies.record_file import log_columns, read_records
 from onpath.models.systems.catalogue import ROBOTS
 from tests.support.arm_logs import (
@@ -409,3 +410,34 @@ def test_forces_count_if_the_log_has_them(tmp_path: Path) -> None:
     assert np.array_equal(record.force, np.tile([0.5, -0.25], (3000, 1)))
     ((_, record),) = read_records(path, made, log_columns(made, names, {}))
     assert not record.force.any()
+
+
+@pytest.mark.parametrize("robot", drawn(["five_bar", "planar_arm", "rod_gantry", "spatial_arm"], 2))
+def test_the_motion_to_record_next_can_be_played_and_tells_all(robot: str) -> None:
+    """It rests at both ends, keeps off the limits, and is no faster than asked for."""
+    entry = ROBOTS[robot]
+    made = entry.make(entry.parameters())
+    rng = np.random.default_rng(1)
+    centre = made.rest(made.frame.lift(rng.uniform(-0.01, 0.01, 2)))
+    fastest = rng.uniform(0.3, 2, made.system.n)
+    motion = planned_motion(entry, centre, fastest)
+    assert made.fault(motion.q, motion.v, entry.parameters()) is None
+    assert np.all(np.abs(motion.v) <= fastest.max() * (1 + 1e-9))
+    assert np.allclose(motion.q[[0, -1]], centre) and np.all(motion.v[[0, -1]] == 0)
+    rates = np.gradient(motion.q, motion.t, axis=0)
+    assert np.abs(rates - motion.v)[1:-1].max() < 5e-3 * fastest.max()
+    steps, none = np.diff(motion.t), 0.0 * motion.q[:, : made.system.m]
+    record = MotionRecord(steps[0], motion.q, motion.v, none, 0.0 * made.endpoint(motion.q))
+    plant = made.plant(entry.parameters())
+    assert conditioning(made.system, [record], plant) == (motion.told, motion.condition)
+    assert motion.told >= made.system.m + 2 and motion.condition < 30
+
+
+@pytest.mark.thorough
+def test_command_and_python_write_the_same_motion_to_record_next(log: Path, tmp_path: Path) -> None:
+    file, again = tmp_path / "next.csv", tmp_path / "again.csv"
+    assert run_command(["identify", str(log), *OPTIONS, "--motion", str(file)]) == 0
+    onpath.identify("five_bar", log, columns=COLUMNS, units=UNITS).motion_to_csv(again)
+    assert file.read_bytes() == again.read_bytes()
+    names, *rows = file.read_text("utf-8").splitlines()
+    assert names == "t_s,q1_rad,q2_rad,q1_rate_rad_s,q2_rate_rad_s" and len(rows) == 1601
