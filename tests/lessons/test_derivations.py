@@ -213,6 +213,44 @@ def inside(of: Symbols) -> list[ca.SX]:
     return [found, -ca.substitute(bending, mark, found) / of["w"]]
 
 
+def one_joint(of: Symbols) -> list[ca.SX]:
+    """The state form of a joint: its equation of motion is linear in the torque."""
+    torque = ca.SX.sym("u")
+    faster = (torque - of["b"] * of["v"] - of["G"] * ca.cos(of["q"])) / of["M"]
+    return [of["v"], ca.substitute(faster, torque, 0), ca.jacobian(faster, torque)]
+
+
+def along_motions(of: Symbols) -> list[ca.SX]:
+    """Derivatives of the output along the motion without torque, and along the torque."""
+    state = ca.vertcat(of["q"], of["v"])
+    free = ca.vertcat(of["v"], -of["b"] * of["v"] / of["M"])
+    once = ca.jtimes(of["l"] * ca.cos(of["q"]), state, free)
+    return [once, ca.jtimes(once, state, free), ca.jacobian(once, of["v"]) / of["M"]]
+
+
+def mirrored(of: Symbols) -> list[ca.SX]:
+    """The pose with the elbow on the other side."""
+    first, second = of["q2"] - ca.pi, of["q1"] + ca.pi
+    elbow = ca.substitute(second - first, of["q2"], of["q1"] + of["delta"])
+    return [of["l"] * ca.cos(first), -of["l"] * ca.cos(second), elbow]
+
+
+def theorem(of: Symbols) -> list[ca.SX]:
+    """The matrix of (11) for the five-bar."""
+    q = ca.vertcat(of["q1"], of["q2"])
+    end = of["l"] * ca.vertcat(ca.cos(q[0]) - ca.cos(q[1]), ca.sin(q[0]) - ca.sin(q[1]))
+    matrix = ca.jacobian(end, q) @ ca.diag(1 / ca.vertcat(of["M11"], of["M22"]))
+    return [matrix[0, 0], matrix[0, 1], ca.det(matrix)]
+
+
+def bent_tip(of: Symbols) -> list[ca.SX]:
+    """How a point between mark and tip answers the torque."""
+    torque, bent = ca.SX.sym("u"), ca.SX.sym("w")
+    mark = of["k"] * torque
+    bending = -of["c"] * mark - of["omega"] ** 2 * bent
+    return [ca.jacobian(mark + of["alpha"] * bending, torque)]
+
+
 ORACLES: list[tuple[str, int, Callable[[Symbols], list[ca.SX]]]] = [
     ("02-what-is-the-error", 0, chord),
     ("02-what-is-the-error", 1, tip),
@@ -223,6 +261,11 @@ ORACLES: list[tuple[str, int, Callable[[Symbols], list[ca.SX]]]] = [
     ("05-invariance", 0, peak),
     ("06-exact-cancellation", 0, offset),
     ("07-flexible-link", 0, inside),
+    ("09-read-the-paper", 0, one_joint),
+    ("09-read-the-paper", 1, along_motions),
+    ("09-read-the-paper", 2, mirrored),
+    ("09b-the-theorem-and-section-iii", 0, theorem),
+    ("09b-the-theorem-and-section-iii", 1, bent_tip),
 ]
 
 

@@ -111,6 +111,12 @@ SOLUTIONS: dict[str, dict[str, tuple[Gesture, ...]]] = {
             *(Key("d", 8), Wait(1), Key("x"), Wait(2)),
         ),
     },
+    "09b-the-theorem-and-section-iii": {
+        "experiment-one": (
+            *(Wait(1), Key("w", 5), Key("a", 3), Wait(1)),
+            *(Enter("Target", 1.57), Key("x"), Wait(3)),
+        ),
+    },
 }
 
 
