@@ -57,7 +57,7 @@ def read_equations(file: Path) -> list[Equation]:
 def equations_table(equations: list[Equation], language: str) -> tuple[str, str]:
     """Title and Markdown of a table of some equations."""
     words = Words(language)
-    heads = [words(f"equations.{name}") for name in ("formula", "here", "place")]
+    heads = [words("equations.formula"), words("equations.here"), words("equations.place")]
     rows = [["", *heads], ["---"] * 4]
     for each in equations:
         number = each.lesson.partition("-")[0].lstrip("0")

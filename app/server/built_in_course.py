@@ -51,9 +51,11 @@ class Versions(Mapping[str, Lesson]):
 
 @cache
 def _read(versions: Versions, language: str) -> Lesson:
-    lesson, first = read_lesson(versions.home / f"{language}.md"), versions.languages[0]
-    keys = lesson.keys if language == first else _read(versions, first).keys
-    return replace(lesson, name=versions.name, keys=keys)
+    lesson = replace(read_lesson(versions.home / f"{language}.md"), name=versions.name)
+    if language == versions.languages[0]:
+        return lesson
+    first = _read(versions, versions.languages[0])
+    return replace(lesson, keys=first.keys, version=first.version)
 
 
 @cache
