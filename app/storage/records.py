@@ -48,7 +48,7 @@ from onpath.models.errors import CodedError
 
 log = logging.getLogger(__name__)
 
-LARGEST = 1_200_000  # [B], of one state
+LARGEST = 1_500_000  # [B], of one state
 
 
 @dataclass(frozen=True, slots=True)

@@ -157,7 +157,6 @@ def known_keys(lesson: Lesson) -> dict[str, set[str]]:
         "twice": blocks(Quiz) | blocks(NumberQuestion),
         "asked_again": set(),
         "second": set(),
-        "marks": set(lesson.keys),
         "unknown": set(),
     }
 

@@ -52,6 +52,7 @@ def in_coordinates(system: MechanicalSystem, matrix: Array) -> MechanicalSystem:
         actuation=a.T @ actuation,
         output=output,
         potential_energy=ca.SX(0),
+        ends=a.T @ system.end_forces(a @ z, a @ w),
     )
 
 
