@@ -20,13 +20,13 @@ export function keepDraft(name: string, draft: object | null): void {
     remember(entryOf(name), draft, "sessionStorage")
 }
 
-/** Begin where an element was scrolled to, also by a page before this one, and keep where it is from now on.
+/** Begin where a new element was scrolled to, also by a page before this one, and keep where it is from now on.
  * @param of what it shows: elsewhere it begins at the top */
 export function keepScroll(element: HTMLElement, name: string, of = ""): void {
     const draft = draftOf<{ of: string; top: number }>(name)
     const keep = (top: number) => keepDraft(name, { of, top })
     const top = draft?.of === of ? Number(draft.top) || 0 : 0
-    element.scrollTop = top
+    if (top) element.scrollTop = top // which lays the page out
     keep(top) // what was read before this begins at its top again
     element.addEventListener("scroll", () => keep(element.scrollTop), { passive: true })
 }
