@@ -2,7 +2,7 @@
 // happened stands beside what was predicted.
 
 import { made } from "../core/dom"
-import type { PageData } from "../core/lesson_data"
+import type { BlockData, PageData } from "../core/lesson_data"
 import { phrase } from "../core/words"
 import { given, predicted, type Notes } from "../lessons/notes"
 import type { Student } from "../lessons/student"
@@ -95,11 +95,14 @@ export class StepView {
         return Boolean(this.notes.played[String(this.index)]) || !this.page.steps[this.index]!.script
     }
 
-    /** Put the settings that the step needs below the text of its first task, or below all its text. */
+    /** Put the settings that the step needs below the text of its first task, or else before its first question. */
     offer(form: HTMLElement): void {
-        const task = this.page.steps[this.index]!.blocks.findIndex(block => block.kind === "task")
-        const text = task >= 0 && this.block(task)?.firstElementChild
+        const { blocks } = this.page.steps[this.index]!
+        const place = (wanted: (block: BlockData) => boolean) => this.block(blocks.findIndex(wanted))
+        const text = place(({ kind }) => kind === "task")?.firstElementChild
+        const question = place(({ kind }) => kind !== "text")
         if (text) text.after(form)
+        else if (question) question.before(form)
         else this.places.section.querySelector(".words")!.append(form)
     }
 

@@ -13,7 +13,7 @@ const FIELD = part(2, "<p>What do you see?</p><textarea></textarea><button type=
 
 function opened(): { column: Column; sent: unknown[]; hear: (changes?: Partial<LessonMessage>) => void } {
     const sent: unknown[] = [], ended = new AbortController().signal
-    const engine = { connected: true, path: { lines: [] }, send: (message: unknown) => sent.push(message) } as unknown as ServerEngine
+    const engine = { connected: true, path: { lines: [] }, outbox: { has: () => false }, send: (message: unknown) => sent.push(message) } as unknown as ServerEngine
     const column = new Column(TEXTS, engine, () => true, () => {}, ended)
     document.body.replaceChildren(column.element)
     let version = 0
@@ -75,6 +75,20 @@ test("settings in a part that is replaced are in its successor before one reads 
     column.offer(form)
     told("<p>The hint.</p>")
     assert.equal(words().querySelector("[data-block] > p + .form + p")?.textContent, "The hint.")
+})
+
+test("settings without a task stand before the first question, or at the end", () => {
+    for (const kinds of [["text", "text"], ["text", "open"], ["text", "text", "open", "text"]]) {
+        const { column, hear } = opened(), form = document.createElement("div")
+        form.className = "form"
+        const blocks = kinds.map(kind => ({ kind, links: [], hints: [] }))
+        const steps = [{ kind: "play", optional: false, running: true, script: null, figure: -1, values: { lengths: [], paths: [] }, blocks }]
+        const html = kinds.map((_, i) => part(i, `<textarea></textarea><p class="verdict"></p>`)).join("")
+        hear({ sections: { "0": `<h2>One</h2>${html}` }, steps } as unknown as Partial<LessonMessage>)
+        column.offer(form)
+        const place = [...words().querySelectorAll("[data-block], .form")].indexOf(form)
+        assert.equal(place, kinds.includes("open") ? kinds.indexOf("open") : kinds.length)
+    }
 })
 
 test("a button sends what stands in it, and keys turn pages unless they are typed", () => {
