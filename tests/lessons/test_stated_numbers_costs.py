@@ -13,7 +13,6 @@ from onpath.models.control.poles import channels
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.five_bar_parameters import FiveBarParameters
 from tests.support.stated_numbers import (
-    WORST,
     Motion,
     assert_stated,
     held,
@@ -290,12 +289,8 @@ def test_course_on_one_page() -> None:
     follower = held(3.0)
     clock = RADIUS * 1e3 * np.stack([np.cos(TURN * follower.t), np.sin(TURN * follower.t)], axis=1)
     lag = np.linalg.norm(follower.y - clock, axis=1)[3000:].max()
-    stated = said(
-        "08", "is up to # mm from where the clock would have it, and # mm from the path. At"
-    )
+    stated = said("08", "is up to # mm from where the clock would have it, and # mm from the path.")
     assert_stated(stated, [float(lag), follower.largest(3, 5)])
-    worst = said("08", "At other places it is up to # mm")
-    assert_stated(worst, [held(WORST).largest(3, 9)])
     stated = said(
         "08",
         "a hand 30 mm to the right moves it # mm, and only # mm with K1 = 1600 and K2 = 80."

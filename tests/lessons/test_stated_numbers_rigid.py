@@ -240,14 +240,6 @@ def test_torque_at_the_edge() -> None:
         assert follower.at(after - 0.01) < 0.001
 
 
-def test_cosine_of_half_the_elbow() -> None:
-    text = "At # mm, # % of the full reach, it is #, and at # mm it is #."
-    far, share, *rest = said("03", text)
-    assert_stated([share], [value(far) / 4])
-    for rho, cosine in ((far, rest[0]), (rest[1], rest[2])):
-        assert_stated([cosine], [float(np.sqrt(1 - (value(rho) / 400) ** 2))])
-
-
 def test_what_the_circle_needs_outwards_at_its_farthest_point() -> None:
     text = "$v^2/r = #$ m/s² there. But the whole arm also turns about its base, and that alone "
     needed, turning, left = said(
