@@ -97,12 +97,11 @@ def spline_through(
     """
     closed = closed and len(strokes) == 1
     lines = _cleaned(strokes, closed)
-    ways = [False] if closed or not repeated else [True, False]
-    for returns in ways:
-        found = _in_order(lines, closed, returns)
+    if repeated and not closed:
+        found = _in_order(lines, closed, returns=True)
         if raised_share(found) <= MOST_RAISED:
-            break
-    return found
+            return found
+    return _in_order(lines, closed, returns=False)
 
 
 def _in_order(lines: list[Array], closed: bool, returns: bool) -> SplineCurve:
@@ -110,7 +109,7 @@ def _in_order(lines: list[Array], closed: bool, returns: bool) -> SplineCurve:
     size = float(np.ptp(np.vstack(lines), axis=0).max())
     line = _joined([_even(each)[0] for each in lines], closed, returns, size)
     steps = np.diff(_times(line, _bends(line)))
-    if steps[~line.pen[1:]].sum() <= MOST_RAISED * steps.sum():  # about; the fit tells exactly
+    if steps[line.pen[1:] == 0].sum() <= MOST_RAISED * steps.sum():  # about; the fit tells exactly
         found = _through(lines, closed, returns)
         if raised_share(found) <= MOST_RAISED:
             return found
@@ -306,7 +305,7 @@ def _link(before: Array, after: Array, size: float) -> Array:
         c - 1j * first * radius * along + along * np.arange(0.0, straight, STEP),
         d - 1j * last * radius * along * np.exp(1j * last * back),
     )
-    points = np.concatenate(parts)[1:]
+    points: Places = np.concatenate(parts)[1:]
     return np.stack([points.real, points.imag], axis=-1)
 
 
@@ -334,11 +333,13 @@ def _arcs(
     squared = np.abs(between) ** 2 - apart**2
     possible = (squared >= 0) & (between != 0)
     straight: Array = np.sqrt(np.where(possible, squared, 0.0))
-    along = np.where(possible, between, 1.0) / np.where(possible, straight + 1j * apart, 1.0)
-    along /= np.abs(along)
+    ways: Places = np.where(possible, between, 1.0).astype(np.complex128)
+    ways /= np.where(possible, straight + 1j * apart, 1.0)
+    along: Places = ways / np.abs(ways)
+    length: Array = np.where(possible, straight, np.inf)
     begin = first * np.angle(along / leaving) % PERIOD
     end = last * np.angle(arriving / along) % PERIOD
-    return np.stack([begin, end]), np.where(possible, straight, np.inf), along
+    return np.stack([begin, end]), length, along
 
 
 def _link_times(turns: Array, straights: Array, radius: float) -> Array:
@@ -364,8 +365,9 @@ def _quickest(size: float) -> Duration:
 
 
 def _direction(points: Array) -> Places:
-    along = np.array(complex(*(points[-1] - points[0])))
-    return along / abs(along)
+    along = complex(*(points[-1] - points[0]))
+    direction: Places = np.array(along / abs(along))
+    return direction
 
 
 def _times(line: Line, bends: Array) -> Array:

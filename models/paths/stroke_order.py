@@ -62,15 +62,20 @@ def _ways(stroke: Array) -> list[Array]:
 
 def _times(ways: Sequence[Array], duration: Duration) -> Array:
     """The time of a link from the end of each way to the beginning of each other one, [s]."""
-    begin, second, before, end = (
-        np.array([complex(*way[k]) for way in ways]) for k in (0, 1, -2, -1)
-    )
-    arriving, leaving = (each / np.abs(each) for each in (second - begin, end - before))
+    begin, second, before, end = (_places([way[k] for way in ways]) for k in (0, 1, -2, -1))
+    arriving: Places = (second - begin) / np.abs(second - begin)
+    leaving: Places = (end - before) / np.abs(end - before)
     times = np.empty((len(ways), len(ways)))
     for i, row in enumerate(times):  # all at once would take much memory
-        from_here = (np.full(len(ways), each[i]) for each in (end, leaving))
-        row[:] = duration(*from_here, begin, arriving)
+        here: Places = np.repeat(end[i : i + 1], len(ways))
+        way: Places = np.repeat(leaving[i : i + 1], len(ways))
+        row[:] = duration(here, way, begin, arriving)
     return times
+
+
+def _places(points: list[Array]) -> Places:
+    found: Places = np.array([complex(*point) for point in points])
+    return found
 
 
 def _improved(times: Array, owner: NDArray[np.int_], first: list[int]) -> NDArray[np.int_]:
