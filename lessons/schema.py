@@ -52,7 +52,7 @@ class Choice(Data, frozen=True, tag="choice", tag_field="kind"):
     hidden: tuple[str, ...] = ()
 
 
-class Shape(Data, frozen=True):
+class SketchShape(Data, frozen=True):
     """A kind of curve that students draw, by features that can be seen in it.
 
     Attributes:
@@ -97,7 +97,7 @@ class Sketch(Data, frozen=True, tag="sketch", tag_field="kind"):
     usual: str = ""
     answer: str = ""
     ask: str = ""
-    shapes: tuple[Shape, ...] = ()
+    shapes: tuple[SketchShape, ...] = ()
     reasons: tuple[str, ...] = ()
     why: bool = False
     hidden: tuple[str, ...] = ()

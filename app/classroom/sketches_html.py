@@ -19,7 +19,7 @@ from onpath.lessons.measures.shapes import shape_of
 from onpath.lessons.measures.thinning import peaks
 from onpath.lessons.progress import Truth
 from onpath.lessons.record import QUANTITIES
-from onpath.lessons.schema import Shape, Sketch
+from onpath.lessons.schema import Sketch, SketchShape
 from onpath.lessons.sides import ROLES
 from onpath.lessons.words import Words
 
@@ -139,7 +139,7 @@ def sketches_view(
 
 def _groups(block: Sketch, number: int, found: Distribution, picks: Picks, words: Words) -> str:
     """How many have drawn each shape that the author names, with one of them as an example."""
-    drawn = dict[Shape | None, list[int]]()
+    drawn = dict[SketchShape | None, list[int]]()
     for at, sketch in replace(picks, picked=()).of(number, found.sketches) if block.shapes else ():
         drawn.setdefault(shape_of(block, sketch), []).append(at)
     ordered = sorted(drawn.items(), key=lambda each: (each[0] is None, -len(each[1])))

@@ -7,13 +7,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from onpath.lessons.given import Answer
-from onpath.lessons.schema import Shape, Sketch
+from onpath.lessons.schema import Sketch, SketchShape
 
 HEIGHT = 0.1
 """Least height of a peak over the valleys on both sides, as a share of the axis."""
 
 
-def shape_of(sketch: Sketch, drawn: Answer) -> Shape | None:
+def shape_of(sketch: Sketch, drawn: Answer) -> SketchShape | None:
     """The first shape of a sketch that a curve has; None if none fits."""
     height = HEIGHT * (sketch.top - sketch.bottom)
     return next((each for each in sketch.shapes if _fits(each, drawn, height)), None)
@@ -29,7 +29,7 @@ def peaks_of(values: Sequence[float], height: float) -> int:
     return count
 
 
-def _fits(shape: Shape, drawn: Answer, height: float) -> bool:
+def _fits(shape: SketchShape, drawn: Answer, height: float) -> bool:
     values = drawn.values
     if shape.peaks and not shape.peaks[0] <= peaks_of(values, height) <= shape.peaks[1]:
         return False

@@ -11,7 +11,14 @@ from onpath.lessons.derivation.typed import NAME, NUMPY
 from onpath.lessons.measures.responses import WITH_SIGN
 from onpath.lessons.measures.stated import zero_faults
 from onpath.lessons.record import QUANTITIES
-from onpath.lessons.schema import Derivation, NumberQuestion, Option, Prediction, Shape, Sketch
+from onpath.lessons.schema import (
+    Derivation,
+    NumberQuestion,
+    Option,
+    Prediction,
+    Sketch,
+    SketchShape,
+)
 from onpath.lessons.task_schema import (
     Better,
     Bound,
@@ -56,7 +63,7 @@ def prediction_faults(prediction: Prediction) -> Iterator[str]:
         yield from option_faults(prediction.options)
 
 
-def _shape_faults(shape: Shape, sketch: Sketch) -> Iterator[str]:
+def _shape_faults(shape: SketchShape, sketch: Sketch) -> Iterator[str]:
     if not shape.name.strip() or shape.without_words == (None, None, ()):
         yield f"shape {shape.name!r}: it needs a name, and a feature"
     ranges = [*filter(None, (shape.peaks, shape.highest)), *(each[1:] for each in shape.at)]

@@ -11,12 +11,12 @@ from onpath.app.classroom.class_html import moves_view
 from onpath.app.classroom.results import moves
 from onpath.lessons.given import Answer
 from onpath.lessons.progress import Progress
-from onpath.lessons.schema import Choice, Option, Shape, Sketch
+from onpath.lessons.schema import Choice, Option, Sketch, SketchShape
 from onpath.lessons.words import ENGLISH
 from tests.support.given import notes_with
 
 CHOICE = Choice("?", tuple(Option(text, text) for text in ("a", "b", "c")))
-SHAPES = (Shape("nothing", highest=(0.0, 1.0)), Shape("a lot", highest=(8.0, 10.0)))
+SHAPES = (SketchShape("nothing", highest=(0.0, 1.0)), SketchShape("a lot", highest=(8.0, 10.0)))
 SKETCH = Sketch("?", "distance", 1.0, 10.0, shapes=SHAPES)
 HEIGHTS = (0.0, 9.0, 5.0)  # of each shape, and of none
 OPEN, SKIPPED = 3, 4

@@ -13,7 +13,7 @@ from onpath.app.classroom.results import Distribution
 from onpath.app.classroom.sketches_html import Picks
 from onpath.lessons.given import Answer
 from onpath.lessons.measures.shapes import shape_of
-from onpath.lessons.schema import Shape, Sketch
+from onpath.lessons.schema import Sketch, SketchShape
 from onpath.lessons.words import ENGLISH
 
 BLOCK = Sketch(
@@ -21,7 +21,7 @@ BLOCK = Sketch(
     quantity="distance",
     seconds=4.0,
     top=10.0,
-    shapes=(Shape("nothing", highest=(0.0, 1.0)), Shape("two peaks", peaks=(2, 2))),
+    shapes=(SketchShape("nothing", highest=(0.0, 1.0)), SketchShape("two peaks", peaks=(2, 2))),
 )
 curves = st.lists(st.tuples(*[st.sampled_from([0.0, 5.0, 10.0])] * 5), max_size=8)
 
