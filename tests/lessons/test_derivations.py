@@ -230,7 +230,7 @@ def along_motions(of: Symbols) -> list[ca.SX]:
 
 def mirrored(of: Symbols) -> list[ca.SX]:
     """The pose with the elbow on the other side."""
-    first, second = of["q2"] - ca.pi, of["q1"] + ca.pi
+    first, second = of["q2"] - np.pi, of["q1"] + np.pi
     elbow = ca.substitute(second - first, of["q2"], of["q1"] + of["delta"])
     return [of["l"] * ca.cos(first), -of["l"] * ca.cos(second), elbow]
 
