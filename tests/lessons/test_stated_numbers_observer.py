@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -12,7 +14,7 @@ pytestmark = pytest.mark.thorough
 LIGHT = {"error_M11": -40.0, "error_M22": -40.0}
 
 
-def run(**settings: float) -> Run:
+def run(**settings: Any) -> Run:
     return onpath.simulate(duration=8.0, K3=0.0, **{"encoder_counts": 2000.0} | settings)
 
 

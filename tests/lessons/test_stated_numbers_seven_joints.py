@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -11,7 +13,7 @@ from onpath.app.notebook.run import Run
 pytestmark = pytest.mark.thorough
 
 
-def run(duration: float, **settings: float) -> Run:
+def run(duration: float, **settings: Any) -> Run:
     return onpath.simulate("seven_axes", duration=duration, K3=0.0, **settings)
 
 
