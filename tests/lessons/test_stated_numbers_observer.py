@@ -15,7 +15,8 @@ LIGHT = {"error_M11": -40.0, "error_M22": -40.0}
 
 
 def run(**settings: Any) -> Run:
-    return onpath.simulate(duration=8.0, K3=0.0, **{"encoder_counts": 2000.0} | settings)
+    measured: dict[str, Any] = {"encoder_counts": 2000.0}
+    return onpath.simulate(duration=8.0, K3=0.0, **measured | settings)
 
 
 def largest(found: Run) -> float:
