@@ -99,6 +99,7 @@ lesson-tasks =
         [one] { $done } von 1 Aufgabe
        *[other] { $done } von { $all } Aufgaben
     }
+lesson-aims = Wozu, und was du brauchst
 lesson-needs = Du brauchst:
 lesson-goals = Danach kannst du:
 lesson-close = Freies Labor

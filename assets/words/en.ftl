@@ -101,6 +101,7 @@ lesson-tasks =
         [one] { $done } of 1 task
        *[other] { $done } of { $all } tasks
     }
+lesson-aims = What it is for, and what you need
 lesson-needs = You need:
 lesson-goals = Afterwards you can:
 lesson-close = Free lab
