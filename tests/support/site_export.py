@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import shutil
 from pathlib import Path
 
 from onpath.app.exports.site.write_site import write_site
-from onpath.lessons.course import BUILT_IN, read_course
+from onpath.app.server.built_in_course import built_in_course
+from onpath.lessons.course import BUILT_IN, Course
+from onpath.lessons.lecture import LECTURE
 
 LESSON = "01-path-or-timetable"
 
@@ -15,10 +16,10 @@ def exported_site(
     folder: Path, languages: tuple[str, ...] = ("en", "de"), lessons: tuple[str, ...] = (LESSON,)
 ) -> Path:
     """Write the site of lesson 1, or of others, into a folder, and return it."""
-    home = folder / "course"
-    for lesson in lessons:
-        shutil.copytree(BUILT_IN / lesson, home / lesson)
-    course, problems = read_course([home])
-    assert not problems
-    write_site(folder / "site", course, home, languages)
+    whole = built_in_course()
+    course = Course(
+        {name: whole.lessons[name] for name in lessons if name != LECTURE},
+        lecture=whole.lecture if LECTURE in lessons else {},
+    )
+    write_site(folder / "site", course, BUILT_IN, languages)
     return folder / "site"
