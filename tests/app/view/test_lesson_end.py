@@ -18,6 +18,7 @@ from onpath.app.server.server_options import ServerOptions
 from onpath.lessons.course import read_course
 from onpath.lessons.given import Answer
 from onpath.lessons.progress import Truth
+from tests.support.given import notes_with
 from tests.support.lab import do, loop_cache, new_lab
 from tests.support.lesson_texts import LESSON, write_lesson
 from tests.support.student import PATIENCE, Student
@@ -69,7 +70,8 @@ def at_the_end(site: Site, answers: dict[str, Answer], truths: dict[str, Truth])
     """At the end of the first lesson, with these answers."""
     site.lab.post(TakeStep("01-a", 7))
     site.sees("Step 8 of 8")
-    notes = replace(site.lab.lessons.notes, answers=answers, truths=truths, quiz={"7.0": 1})
+    given = notes_with(answers=answers, quiz={"7.0": 1}).given
+    notes = replace(site.lab.lessons.notes, given=given, truths=truths)
     progress = site.lab.lessons.progress
     site.lab.lessons.progress = replace(progress, notes={**progress.notes, "01-a": notes})
     site.student.press("Finish")
