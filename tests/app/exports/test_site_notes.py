@@ -272,7 +272,7 @@ def all_done(steps: Steps) -> Notes:
                 said = event(key, text="Because.")
             elif block["kind"] == "derivation":
                 said = event(key, text="\n".join(right_rows(block["lines"])), right=True)
-            elif "checks" in block:
+            elif "checks" in block and not block.get("exploratory"):
                 said = event(block["id"], number=0, right=True, way=0)
             else:
                 continue
