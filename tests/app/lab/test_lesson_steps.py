@@ -53,7 +53,8 @@ def wanted(name: str, index: int) -> tuple[Setup, dict[str, np.ndarray]]:
     parameters, path = ROBOTS[lesson.front.robot].parameters(), "circle"
     for scene in (step.scene for step in lesson.steps[: index + 1] if step.scene):
         if not scene.keep:
-            parameters, path = ROBOTS[lesson.front.robot].parameters(), "circle"
+            robot = scene.robot or lesson.front.robot
+            parameters, path = ROBOTS[robot].parameters(), "circle"
         for parameter, value in scene.set.items():
             parameters = changed(parameters, parameter, value)
         path = scene.path or path
