@@ -1,4 +1,4 @@
-"""The lecture of a course: slides with live figures, and notes for who gives it.
+"""The lecture of a course: slides with live figures, and the lecturer's notes.
 
 It is written like a lesson, in the folder `lecture` of a course. It is on the course's site, and
 not among the lessons: nothing in it is answered alone, kept or graded.

@@ -336,7 +336,7 @@ class _Reader:
         draft.watch = read.html
 
     def _notes(self, draft: _Draft, content: str, line: int) -> None:
-        """Read a fenced block of Markdown for who gives the lecture."""
+        """Read a fenced block of Markdown for the lecturer."""
         if self._folder != LECTURE:
             self._complain(line - 1, "notes stand in a lecture: students read a lesson")
         read = read_prose(

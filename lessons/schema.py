@@ -285,7 +285,7 @@ class Step(msgspec.Struct, frozen=True):
             lesson.
         when: see `StepMark`.
         watch: of a `run` step: what to look at, shown before and during the run; may be empty.
-        notes: of a lecture's slide: what to say and ask, for who gives it; may be empty.
+        notes: of a lecture's slide: what the lecturer says and asks; may be empty.
         stated: numbers in its text that a run must confirm.
         behaviours: words in its text that say what the lab does.
     """

@@ -31,7 +31,7 @@ from onpath.models.systems.robots import RobotEntry
 
 ASKED = 1.0  # [s] without a request, after which the process that asks counts as lost
 LINGER = 10.0  # [s] for which a lost process's controller still answers
-START = "spawn"  # so that it shares nothing with who starts it
+START = "spawn"  # so that it shares nothing with the process that starts it
 PATIENCE = 60.0  # [s] for the controllers to be made, or for an answer
 GONE = "the controller's process has ended: the plant gets no torque"
 Address = tuple[str, int]
@@ -165,7 +165,7 @@ class ControllerProcess:
 
 def serve(connection: Connection, plan: ControllerPlan, address: Address) -> None:
     """Answer a plant until nobody needs that any more; the main function of the process."""
-    for number in END_SIGNALS:  # of the terminal, say; who has started it handles them
+    for number in END_SIGNALS:  # of the terminal, say; the process that has started it handles them
         signal.signal(number, signal.SIG_IGN)
     try:
         controllers = plan.made()

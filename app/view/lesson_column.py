@@ -28,22 +28,22 @@ class LessonColumn:
 
     def __init__(self, course: Course, words: Words, student: str, submit: Submit) -> None:
         self._course, self._words, self._student = course, words, student
-        self._submit, self._shown = submit, -1
-        self._made_for: tuple[int, str, bool] | None = None
+        self._submit = submit
+        self._made_for = -1, "", False  # version of the lessons, robot, whether it is presented
         self.message = self.measured = b""
         self._turn = 0
 
     @property
     def version(self) -> int:
         """Version of the lessons that the last message tells of; see `LessonSnapshot`."""
-        return self._shown
+        return self._made_for[0]
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Make the messages that have changed."""
         run = LessonView(self._course, self._words, snapshot.lesson, self._student)
         made_for = run.version, snapshot.key.robot, snapshot.lesson.presenting
         if made_for != self._made_for:
-            self._shown, self._made_for = run.version, made_for
+            self._made_for = made_for
             self._submit(lambda: self._tell(run, robot_of(snapshot)))
         self._turn += 1
         if run.lesson is not None and not (run.playing and self._turn % EVERY):

@@ -1,4 +1,4 @@
-// The notes of a lecture (app/exports/site), for who gives it.
+// The lecturer's notes on a lecture's page (app/exports/site).
 
 import { isTyped, keyOf } from "../core/dom"
 
