@@ -10,8 +10,8 @@ from onpath.app.exports.figures import ShownFigure
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.closed_loop.trajectory import header
 from onpath.models.studies.exciting_motion import PlannedMotion
-from onpath.models.studies.linear_model import BaseParameter
 from onpath.models.studies.log_identification import FileEstimate
+from onpath.models.studies.parameter_estimate import BaseParameter
 from onpath.models.systems.robots import RobotEntry
 
 SETTINGS = "settings"  # name of what `--set @FILE` reads

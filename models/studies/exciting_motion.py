@@ -2,7 +2,7 @@
 
 The equations of motion give the regressor of any motion, even of one that no robot has made yet. A
 motion identifies parameters if the columns of its regressor, together with those of the record, are
-independent (see linear_model.py).
+independent (see parameter_estimate.py).
 
 The motion to record next is drawn at random, and the one with the best condition number of the
 regressor is taken.
@@ -20,7 +20,8 @@ import numpy as np
 
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
-from onpath.models.studies.linear_model import MotionRecord, conditioning, dependent_names
+from onpath.models.studies.linear_model import MotionRecord
+from onpath.models.studies.parameter_estimate import conditioning, dependent_names
 from onpath.models.systems.robots import Robot, RobotEntry
 from onpath.models.systems.system import MechanicalSystem
 
@@ -56,7 +57,7 @@ def exciting_motion(
     """The motion of the fewest coordinates that identifies the most of what the records do not.
 
     Args:
-        geometry: see `linear_model.estimate`.
+        geometry: see `parameter_estimate.estimate`.
         names: of the parameters that matter.
 
     Returns:

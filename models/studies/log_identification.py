@@ -11,13 +11,8 @@ import numpy as np
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
 from onpath.models.studies.exciting_motion import ExcitingMotion, exciting_motion
-from onpath.models.studies.linear_model import (
-    Estimate,
-    MotionRecord,
-    estimate,
-    linear_model,
-    unexplained_of,
-)
+from onpath.models.studies.linear_model import MotionRecord, linear_model
+from onpath.models.studies.parameter_estimate import Estimate, estimate, unexplained_of
 from onpath.models.studies.record_file import LogColumns, log_columns, read_records
 from onpath.models.systems.parameter_specs import unknown_name
 from onpath.models.systems.robots import Robot, RobotEntry

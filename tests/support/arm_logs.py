@@ -15,7 +15,7 @@ from onpath.models.arrays import Array
 from onpath.models.closed_loop.trajectory import Trajectory
 from onpath.models.paths.path_design import presets
 from onpath.models.studies.experiments import experiments, run
-from onpath.models.studies.linear_model import DELAY, Estimate, estimate
+from onpath.models.studies.parameter_estimate import DELAY, Estimate, estimate
 from onpath.models.studies.record_file import log_columns, quantities, read_records
 from onpath.models.systems.catalogue import ROBOTS
 

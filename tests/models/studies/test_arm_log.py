@@ -16,7 +16,8 @@ from onpath.app.exports.identification import identification_data
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
 from onpath.models.studies.exciting_motion import planned_motion
-from onpath.models.studies.linear_model import MotionRecord, conditioning, dependent_names
+from onpath.models.studies.linear_model import MotionRecord
+from onpath.models.studies.parameter_estimate import conditioning, dependent_names
 from onpath.models.studies.record_file import log_columns, read_records
 from onpath.models.systems.catalogue import ROBOTS
 from tests.support.arm_logs import (

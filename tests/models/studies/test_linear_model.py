@@ -27,7 +27,8 @@ from onpath.models.closed_loop.simulation import (
 from onpath.models.closed_loop.trajectory import MEASURED, write_csv
 from onpath.models.control.sides import LEFT, RIGHT
 from onpath.models.studies.experiments import experiments, run
-from onpath.models.studies.linear_model import MotionRecord, estimate, linear_model
+from onpath.models.studies.linear_model import MotionRecord, linear_model
+from onpath.models.studies.parameter_estimate import estimate
 from onpath.models.studies.record_file import read_records
 from onpath.models.studies.table_file import LONGEST_LINE
 from onpath.models.systems.catalogue import ROBOTS
