@@ -19,9 +19,9 @@ TOPS = ("app", "models", "lessons", "assets")
 # Every folder may import those that stand below it here, and nothing else of the project.
 ORDER = [
     "app.cli",
+    "app.server",
     "app.plant",
     "app.notebook",
-    "app.server",
     "app.exports",
     "app.classroom",
     "app.scene",
