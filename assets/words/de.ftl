@@ -1613,6 +1613,7 @@ say-raised = Der Stift wird { $count ->
     [2] zweimal
    *[other] { $count }-mal
 } abgehoben: { $share } % der Zeit.
+say-reordered = Die Linien werden in anderer Reihenfolge oder Richtung gezeichnet als in der Datei, damit der Stift kürzer abgehoben ist.
 say-gcode_words = Diese Befehle der Datei haben keine Wirkung auf die Bahn: { $words }{ $more ->
     [0] .
    *[other] {""} und { $more } weitere.

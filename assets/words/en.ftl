@@ -1196,6 +1196,7 @@ say-raised = The pen is raised { $count ->
     [2] twice
    *[other] { $count } times
 }: { $share } % of the time.
+say-reordered = The lines are drawn in another order or direction than in the file, which keeps the pen up for less of the time.
 say-gcode_words = These codes of the file have no effect on the path: { $words }{ $more ->
     [0] .
    *[other] {""} and { $more } more.

@@ -12,6 +12,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
+
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError, Message
 from onpath.models.path_files.gcode import strokes_of_gcode
@@ -32,6 +34,7 @@ from onpath.models.path_files.svg import strokes_of_svg
 from onpath.models.path_files.table import strokes_of_table
 from onpath.models.paths.curve_fit import deviation_remark, distinct
 from onpath.models.paths.curves import Curve
+from onpath.models.paths.spline_curves import SplineCurve
 from onpath.models.paths.spline_fit import raised_share
 from onpath.models.studies.path_text import LONGEST_TEXT, curve_from_text, is_described
 from onpath.models.studies.table_file import encoding_of
@@ -158,14 +161,26 @@ def path_through(points: Array, placing: Placing) -> ImportedPath:
 
 def _path(strokes: Sequence[Stroke], placing: Placing, remarks: list[Message]) -> ImportedPath:
     """The path of lines, with the remarks on them and some more."""
-    curve = curve_of(placed(strokes, placing), placing)
+    lines = placed(strokes, placing)
+    curve = curve_of(lines, placing)
     if curve.raised:
         count, share = len(curve.raised), f"{100 * raised_share(curve):.0f}"
         remarks.append(Message("say.raised", {"count": count, "share": share}))
+        if not _keeps_order(curve, lines):
+            remarks.append(Message("say.reordered"))
     if placing.corners == ROUND:
         radius = f"{1e3 * least_radius(curve):.1f}"
         remarks.append(Message("say.rounded", {"radius": radius}))
     return _remarked(curve, remarks)
+
+
+def _keeps_order(curve: SplineCurve, strokes: Sequence[Stroke]) -> bool:
+    """Whether the pen comes down on the beginnings of strokes, in their order."""
+    down = [curve.begin, *(end for _, end in curve.raised if end < np.pi)]
+    ends = np.array([stroke.points[k] for k in (0, -1) for stroke in strokes])
+    apart = np.linalg.norm(curve.at(np.array(down))[:, None] - ends, axis=-1)
+    nearest = apart.argmin(axis=1)
+    return nearest[-1] < len(strokes) and bool((np.diff(nearest) > 0).all())
 
 
 def read_reference(text: str) -> tuple[Path, Placing]:

@@ -20,10 +20,11 @@ from onpath.models.path_files.reading import (
     ImportedPath,
     path_in,
     path_of,
+    path_of_drawing,
     path_through,
     read_reference,
 )
-from onpath.models.path_files.stroke import MOST_POINTS
+from onpath.models.path_files.stroke import MOST_POINTS, LineDrawing, Stroke
 from onpath.models.paths.curves import circle, ellipse
 from onpath.models.paths.spline_curves import SplineCurve
 
@@ -515,3 +516,22 @@ def test_what_a_message_quotes_of_a_file_is_short() -> None:
 def test_a_drawing_that_svgpathtools_fails_on_is_refused() -> None:
     with pytest.raises(CodedError, match="line 2"):
         read('<svg>\n<path d="L 5 40 C 5 15 36 4 55 18 Z"/></svg>', "a.svg", fit=0.1)
+
+
+@settings(max_examples=8, deadline=None)
+@given(order=st.permutations(range(5)), ways=st.lists(st.booleans(), min_size=5, max_size=5))
+def test_another_order_or_direction_of_lines_is_told(order: list[int], ways: list[bool]) -> None:
+    begins = np.array([[-0.04, 0.01 * row] for row in order])
+    lines = [np.linspace(begin, begin + [0.03, 0.0], 9) for begin in begins]
+    strokes = [
+        Stroke(line[::-1] if way else line, closed=False, straight=False)
+        for line, way in zip(lines, ways, strict=True)
+    ]
+    found = path_of_drawing(LineDrawing(tuple(strokes), ()), Placing())
+    curve = found.curve
+    assert isinstance(curve, SplineCurve)
+    middles = np.array([stroke.points[4] for stroke in strokes])
+    theta = curve.nearest(middles)[0]
+    along = curve.at(theta, 1)[:, 0] < 0
+    kept = bool((np.diff(theta) > 0).all()) and along.tolist() == ways
+    assert ("say.reordered" in [each.code for each in found.remarks]) is not kept
