@@ -370,6 +370,9 @@ def _asked(step: Step) -> dict[str, object]:
         "right options": [
             [o.right for o in b.options] for b in blocks if isinstance(b, Choice | Quiz)
         ],
+        "second tries": [
+            b.second and b.second.without_words for b in blocks if isinstance(b, Choice | Quiz)
+        ],
         "axes to draw on": [
             replace(b, question="", usual="", answer="", ask="", reasons=(), hidden=(), shapes=())
             for b in blocks

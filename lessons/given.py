@@ -50,10 +50,10 @@ class Given(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaul
     all read from these.
 
     Attributes:
-        item: what was answered: a prediction, by step, a question, by step and block, or a task, by
-            its id.
-        attempt: number of the answer to the item, from 1; one that only repeats the answer before
-            it is none.
+        item: what was answered: a prediction, by step, a question, by step and block, a second try
+            (see `lessons.second_try`), or a task, by its id.
+        attempt: number of the answer to the item, from 1, or 2 for a second try; one that only
+            repeats the answer before it is none.
         time: seconds since 1970; 0 if unknown.
         round: how often the item had been asked again by then; 0: never.
         answer: to a prediction or a quiz.

@@ -46,9 +46,9 @@ from onpath.lessons.task_schema import Task
 from onpath.lessons.text_files import FileError, load_toml, read_text
 from onpath.lessons.toml_blocks import read_checked, read_toml
 from onpath.lessons.vocabulary.blocks import (
+    choice_faults,
     derivation_faults,
     number_faults,
-    option_faults,
     prediction_faults,
     task_faults,
 )
@@ -257,7 +257,7 @@ class _Reader:
             kinds: dict[str, tuple[Any, Callable[[Any], Iterable[str]]]] = {
                 "predict": (Prediction, prediction_faults),
                 "task": (Task, self._task_faults),
-                "quiz": (Quiz, _quiz_faults),
+                "quiz": (Quiz, self._quiz_faults),
                 "number": (NumberQuestion, number_faults),
                 "open": (OpenQuestion, lambda _: ()),
                 "derivation": (Derivation, derivation_faults),
@@ -287,6 +287,11 @@ class _Reader:
         if task.id in self._ids:
             yield f"id {task.id!r}: another task has it"
         self._ids.add(task.id)
+
+    def _quiz_faults(self, quiz: Quiz) -> Iterator[str]:
+        yield from choice_faults(quiz)
+        if quiz.second is not None and self._folder == FOLDER:
+            yield "second: the concept test asks everything once"
 
     def _fold(self, draft: _Draft, title: str, content: str, line: int) -> None:
         """Read a fenced block of Markdown that is shown when its title is pressed."""
@@ -392,7 +397,3 @@ def _words_faults(content: str) -> Iterator[str]:
         yield from data_faults(load_toml(content))
     except tomllib.TOMLDecodeError:
         return
-
-
-def _quiz_faults(quiz: Quiz) -> Iterator[str]:
-    return option_faults(quiz.options)

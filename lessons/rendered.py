@@ -17,6 +17,7 @@ from onpath.lessons.schema import (
     OpenQuestion,
     Option,
     Quiz,
+    SecondTry,
     Sketch,
 )
 from onpath.lessons.task_schema import Task
@@ -46,12 +47,18 @@ def _(part: Sketch) -> Sketch:
 
 @rendered.register
 def _(part: Choice) -> Choice:
-    return replace(_html(part, "question", "ask"), options=_options(part))
+    return replace(
+        _html(part, "question", "ask"), options=_options(part), second=_second(part.second)
+    )
 
 
 @rendered.register
 def _(part: Quiz) -> Quiz:
-    return replace(_html(part, "question", "misconception"), options=_options(part))
+    return replace(
+        _html(part, "question", "misconception"),
+        options=_options(part),
+        second=_second(part.second),
+    )
 
 
 @rendered.register
@@ -90,7 +97,13 @@ def _html(part: Any, *names: str) -> Any:
     return replace(part, **{name: to_html(getattr(part, name)) for name in names})
 
 
-def _options(part: Choice | Quiz) -> tuple[Option, ...]:
+def _second(part: SecondTry | None) -> SecondTry | None:
+    if part is None:
+        return None
+    return replace(_html(part, "question", "answer"), options=_options(part))
+
+
+def _options(part: Choice | Quiz | SecondTry) -> tuple[Option, ...]:
     return tuple(
         Option(
             text=to_html(option.text),

@@ -34,10 +34,85 @@ class Option(Data, frozen=True):
     key: str = ""
 
 
+class WrongNumber(Data, frozen=True):
+    """A wrong number that is known, since it comes from a known mistake.
+
+    Attributes:
+        number: in the question's unit.
+        answer: what is said to those who give it, without the right number.
+    """
+
+    number: float
+    answer: str
+
+
+class NumberQuestion(Data, frozen=True):
+    """A question whose answer is a number, which is checked.
+
+    Attributes:
+        number: the right answer, in `unit`.
+        tolerance: largest accepted deviation, in `unit`.
+        answer: shown after a right or a second answer.
+        wrong: wrong numbers that are answered by name, within the same tolerance.
+    """
+
+    question: str
+    number: float
+    tolerance: float
+    answer: str
+    unit: str = ""
+    wrong: tuple[WrongNumber, ...] = ()
+
+    def accepts(self, given: float) -> bool:
+        """Whether a number is right, up to rounding."""
+        return self._near(given, self.number)
+
+    def known(self, given: float) -> int | None:
+        """The index of the known wrong number that is given, or None."""
+        return next((i for i, w in enumerate(self.wrong) if self._near(given, w.number)), None)
+
+    def _near(self, given: float, number: float) -> bool:
+        return abs(given - number) <= self.tolerance * (1 + 1e-9)
+
+
+class SecondTry(Data, frozen=True):
+    """What is asked after a wrong choice: its reason, by options, or another number.
+
+    Attributes:
+        number, tolerance, unit, answer: as in `NumberQuestion`; None and empty with options.
+    """
+
+    question: str
+    options: tuple[Option, ...] = ()
+    number: float | None = None
+    tolerance: float = 0.0
+    unit: str = ""
+    answer: str = ""
+
+    @property
+    def asked(self) -> Quiz | NumberQuestion:
+        """The same as a question that stands by itself."""
+        if self.number is None:
+            return Quiz(self.question, self.options)
+        return NumberQuestion(
+            question=self.question,
+            number=self.number,
+            tolerance=self.tolerance,
+            answer=self.answer,
+            unit=self.unit,
+        )
+
+    @property
+    def without_words(self) -> tuple[object, ...]:
+        """What it judges by, the same in all languages."""
+        return self.number, self.tolerance, [option.right for option in self.options]
+
+
 class Choice(Data, frozen=True, tag="choice", tag_field="kind"):
     """A prediction: one of several options.
 
     Attributes:
+        second: asked after a wrong choice, once the run has been seen.
         ask: for the teacher, what to ask the class before it is seen.
         hidden: words that no earlier text may contain outside a fold.
         reasons: the student may choose one of them.
@@ -46,6 +121,7 @@ class Choice(Data, frozen=True, tag="choice", tag_field="kind"):
 
     question: str
     options: tuple[Option, ...]
+    second: SecondTry | None = None
     ask: str = ""
     reasons: tuple[str, ...] = ()
     why: bool = False
@@ -110,55 +186,16 @@ class Quiz(Data, frozen=True):
     """A question at the end of a lesson, or of the concept test.
 
     Attributes:
+        second: asked after a wrong choice, in place of the same question once more.
         misconception: for the teacher, the false belief that a question of the test targets.
         warm_up: the earlier lesson from which it is drawn; such a question counts nothing.
     """
 
     question: str
     options: tuple[Option, ...]
+    second: SecondTry | None = None
     misconception: str = ""
     warm_up: str = ""
-
-
-class WrongNumber(Data, frozen=True):
-    """A wrong number that is known, since it comes from a known mistake.
-
-    Attributes:
-        number: in the question's unit.
-        answer: what is said to those who give it, without the right number.
-    """
-
-    number: float
-    answer: str
-
-
-class NumberQuestion(Data, frozen=True):
-    """A question whose answer is a number, which is checked.
-
-    Attributes:
-        number: the right answer, in `unit`.
-        tolerance: largest accepted deviation, in `unit`.
-        answer: shown after a right or a second answer.
-        wrong: wrong numbers that are answered by name, within the same tolerance.
-    """
-
-    question: str
-    number: float
-    tolerance: float
-    answer: str
-    unit: str = ""
-    wrong: tuple[WrongNumber, ...] = ()
-
-    def accepts(self, given: float) -> bool:
-        """Whether a number is right, up to rounding."""
-        return self._near(given, self.number)
-
-    def known(self, given: float) -> int | None:
-        """The index of the known wrong number that is given, or None."""
-        return next((i for i, w in enumerate(self.wrong) if self._near(given, w.number)), None)
-
-    def _near(self, given: float, number: float) -> bool:
-        return abs(given - number) <= self.tolerance * (1 + 1e-9)
 
 
 class OpenQuestion(Data, frozen=True):

@@ -3,8 +3,8 @@
 A strategy marks some options of a question by their form. Where it marks k of n options, 0 < k < n,
 and takes one of those at random, it is right with probability 1/k or 0. If the right option
 has nothing to do with the form, that has the mean 1/n and the variance 1/(k n) - 1/n². Questions in
-which it marks no option, or every one, say nothing about it. Predictions, quizzes and each concept
-test are counted separately, as is each language.
+which it marks no option, or every one, say nothing about it. Predictions, quizzes, second tries and
+each concept test are counted separately, as is each language.
 """
 
 from __future__ import annotations
@@ -105,6 +105,8 @@ def _groups(course: Course, language: str) -> Iterator[tuple[str, list[Choice | 
     asked = [each for lesson in lessons for each in _asked(lesson)]
     yield f"{language} predictions", [each for each in asked if isinstance(each, Choice)]
     yield f"{language} quizzes", [each for each in asked if isinstance(each, Quiz)]
+    tries = [each.second.asked for each in asked if each.second is not None]
+    yield f"{language} second tries", [each for each in tries if isinstance(each, Quiz)]
     tests = [versions[language] for versions in course.tests.values() if language in versions]
     forms = {tuple(_asked(test)): test.name for test in reversed(tests)}
     yield from ((f"{language} {name}", list(form)) for form, name in reversed(forms.items()))

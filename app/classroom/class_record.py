@@ -31,6 +31,7 @@ from onpath.lessons.schema import (
     Quiz,
     Sketch,
 )
+from onpath.lessons.second_try import second_at, second_item
 from onpath.lessons.votes import Vote, is_late, vote_on
 
 Row = Mapping[str, str | int | float]
@@ -87,8 +88,8 @@ def class_record(
     a number, and `text` the student's own words, or the rows of a derivation, which is right if
     each line was so at once. `hints` is the number of a task's hints that were shown. `right` is
     empty for what counts nothing: a task that is meant to be found by trying, and a warm-up
-    question. The sheet Sketches
-    has the points of drawn curves, in the units of their axes.
+    question. A "second try", which is asked after a wrong choice, has a row if it was made. The
+    sheet Sketches has the points of drawn curves, in the units of their axes.
 
     Args:
         made: time of the record, in UTC.
@@ -180,6 +181,7 @@ def _answers(lesson: Lesson, notes: Notes, votes: Sequence[Vote]) -> Iterator[Ro
                     row["value"] = given.number
                 yield row
         yield from _questions(lesson, index, notes, votes)
+        yield from _second_tries(lesson, index, notes)
 
 
 def _when(given: Given | None, vote: Vote | None) -> Row:
@@ -230,6 +232,20 @@ def _questions(lesson: Lesson, index: int, notes: Notes, votes: Sequence[Vote]) 
         vote = vote_on(votes, lesson.name, item)
         for given in given_to(notes, item) or [None]:
             yield {**place, **_when(given, vote), **_answered(block, given)}
+
+
+def _second_tries(lesson: Lesson, index: int, notes: Notes) -> Iterator[Row]:
+    """The rows of a step's second tries that were made."""
+    step = lesson.steps[index]
+    for at, asked in enumerate(step.blocks):
+        item = second_item(index, at)
+        block = second_at(lesson.steps, item)
+        uncounted = isinstance(asked, Quiz) and asked.warm_up
+        for given in given_to(notes, item) if block is not None else ():
+            row = _answered(block, given)
+            row = {name: cell for name, cell in row.items() if name != "right" or not uncounted}
+            place = {"step": index + 1, "item": step.title, "kind": "second try"}
+            yield {**place, **_when(given, None), **row}
 
 
 def _answered(block: Block, given: Given | None) -> Row:

@@ -6,7 +6,7 @@ It does not depend on a lab; `app.lab.lesson_run` plays the steps on one.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -26,6 +26,7 @@ from onpath.lessons.right import is_right
 from onpath.lessons.routes import Route
 from onpath.lessons.schema import (
     Block,
+    Choice,
     Derivation,
     Lesson,
     NumberQuestion,
@@ -34,6 +35,7 @@ from onpath.lessons.schema import (
     Quiz,
     Step,
 )
+from onpath.lessons.second_try import SECOND_TRY, is_missed, second_at, second_item
 from onpath.lessons.votes import Vote
 from onpath.lessons.words import Words
 from onpath.models.errors import CodedError, Message
@@ -200,7 +202,7 @@ class LessonState:
         for name, known in notes.items():
             if asked := {each.item for each in self.votes if each.lesson == name}:
                 truths = {k: truth for k, truth in known.truths.items() if k not in asked}
-                given = tuple(each for each in known.given if each.item not in asked)
+                given = tuple(each for each in known.given if not _is_of(each.item, asked))
                 notes[name] = replace(known, truths=truths, given=given)
         return replace(self.progress, notes=notes)
 
@@ -322,32 +324,82 @@ class LessonState:
             raise CodedError("lesson.no_more_hints")
         self.note(hints={**self.notes.hints, task: shown})
 
-    def answer_quiz(self, block: int, option: int, sent: Sent = UNSENT) -> None:
+    def answer_quiz(
+        self, block: int, option: int, sent: Sent = UNSENT, *, second: bool = False
+    ) -> None:
         """Choose an option of a quiz, given its index among its step's blocks.
 
+        Args:
+            second: choose one of its second try, or of a prediction's.
+
         Raises:
-            ValueError: there is no such quiz or option, or the test has been handed in.
+            ValueError: there is no such quiz or option, it is not asked (any more), or the test has
+                been handed in.
         """
         lesson, index = self._asked(sent)
         if self._notes_on(lesson).handed_in:
             raise CodedError("test.over")
-        quiz = _block(lesson, index, block)
+        item, quiz = self._question(lesson, index, block, second)
         if not isinstance(quiz, Quiz) or option not in range(len(quiz.options)):
             raise CodedError("lesson.no_such_option")
-        self._give(lesson, quiz, Given(f"{index}.{block}", answer=Answer(option=option)), sent)
+        self._give(lesson, quiz, Given(item, answer=Answer(option=option)), sent)
 
-    def answer_number(self, block: int, given: float, sent: Sent = UNSENT) -> None:
+    def answer_number(
+        self, block: int, given: float, sent: Sent = UNSENT, *, second: bool = False
+    ) -> None:
         """Answer a question with a number; `block` is its index among its step's blocks.
 
+        Args:
+            second: answer its second try, or a prediction's.
+
         Raises:
-            ValueError: there is no such question, or the answer is not a number.
+            ValueError: there is no such question, it is not asked (any more), or the answer is not
+                a number.
         """
         lesson, index = self._asked(sent)
-        asked = _block(lesson, index, block)
+        item, asked = self._question(lesson, index, block, second)
         if not isinstance(asked, NumberQuestion):
             raise CodedError("lesson.no_such_option")
-        number = kept_number(given)
-        self._give(lesson, asked, Given(f"{index}.{block}", number=number), sent)
+        self._give(lesson, asked, Given(item, number=kept_number(given)), sent)
+
+    def _question(
+        self, lesson: Lesson, index: int, block: int, second: bool
+    ) -> tuple[str, Block | None]:
+        """The item of an answer to a question, and what is asked.
+
+        Raises:
+            ValueError: it is a second try, and the first one was right or is still awaited; or the
+                first one was wrong, and the second try asks something else.
+        """
+        asked = _block(lesson, index, block)
+        if second:
+            if not self.is_second_tried(lesson, index, block):
+                raise CodedError("lesson.no_such_option")
+            item = second_item(index, block)
+            return item, None if self._is_answered(lesson, item) else second_at(lesson.steps, item)
+        item = f"{index}.{block}"
+        if isinstance(asked, Quiz) and self.is_second_tried(lesson, index, block):
+            raise CodedError("lesson.second_try")
+        return item, asked
+
+    def is_second_tried(self, lesson: Lesson, index: int, block: int) -> bool:
+        """Whether the second try of a question has begun: its first answer is wrong, and may be
+        known to be so. A prediction is not judged before its run."""
+        asked, notes, item = _block(lesson, index, block), self._notes_on(lesson), str(index)
+        if not isinstance(asked, Choice | Quiz) or asked.second is None:
+            return False
+        if isinstance(asked, Choice):
+            if item not in notes.truths:
+                return False
+            answers = notes.second if item in notes.asked_again else notes.answers
+            given = [Given(item, answer=answers[item])] if item in answers else []
+        else:
+            item = f"{index}.{block}"
+            given = [each for each in given_to(notes, item) if not each.lost]
+        return not self.is_voted_on(item, lesson.name) and is_missed(asked, given)
+
+    def _is_answered(self, lesson: Lesson, item: str) -> bool:
+        return any(not each.lost for each in given_to(self._notes_on(lesson), item))
 
     def answer_in_words(self, block: int, typed: str, sent: Sent = UNSENT) -> None:
         """Answer an open question, or take the answer back with an empty one; or answer the next
@@ -421,7 +473,7 @@ class LessonState:
         before, asked = given_to(notes, given.item), notes.asked_again.count(given.item)
         new = replace(
             given,
-            attempt=_attempt(before),
+            attempt=_attempt(before, given.item),
             time=round(self.clock(), 3),
             round=asked,
             hints=notes.hints.get(given.item, 0),
@@ -495,9 +547,17 @@ def _latest_keys(progress: Progress) -> tuple[str, ...]:
     return tuple(each.key for each in sorted(given, key=lambda each: each.time)[-MOST_SENT:])
 
 
-def _attempt(before: Sequence[Given]) -> int:
+def _attempt(before: Sequence[Given], item: str) -> int:
     """The number of an answer; one takes the place of an answer that cannot be identified."""
-    return before[-1].attempt + (not before[-1].lost) if before else 1
+    first = 2 if item.endswith(SECOND_TRY) else 1
+    return before[-1].attempt + (not before[-1].lost) if before else first
+
+
+def _is_of(item: str, asked: Collection[str]) -> bool:
+    """Whether an answer is one to some questions, or a second try at one."""
+    question = item.removesuffix(SECOND_TRY)
+    tried = item != question and question.partition(".")[0] in asked
+    return question in asked or tried
 
 
 def _says(given: Given) -> tuple[object, ...]:

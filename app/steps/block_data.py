@@ -39,8 +39,14 @@ def block_data(part: StepPart, lesson: Lesson, index: int, words: Words) -> dict
         data |= derivation_data(block, part.states)
     elif isinstance(block, Task):
         data["limits"] = limits_data(block, lesson.laws_shown(index), words)
-    if isinstance(block, Quiz) and block.warm_up:
+    counts = not (isinstance(block, Choice) or (isinstance(block, Quiz) and block.warm_up))
+    if isinstance(block, Quiz) and not counts:
         data["uncounted"] = True
+    if isinstance(block, Choice | Quiz) and block.second is not None:
+        data["followed"] = True
+    if part.second is not None:
+        data["second"] = block_data(part.second, lesson, index, words)
+        data["second"] |= {} if counts else {"uncounted": True}
     return data
 
 

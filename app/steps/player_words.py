@@ -14,6 +14,8 @@ _PLAIN = (
         "answer.check",
         "answer.keep",
         "answer.price",
+        "answer.price_followed",
+        "answer.price_second",
         "answer.carried",
         "answer.line",
         "formula.missing",

@@ -13,7 +13,7 @@ from onpath.lessons.derivation.judged import LineState
 from onpath.lessons.option_order import LETTERS
 from onpath.lessons.progress import Notes
 from onpath.lessons.safe_html import safe
-from onpath.lessons.schema import KINDS, Block, Lesson, Text
+from onpath.lessons.schema import KINDS, Block, Choice, Lesson, Prediction, Quiz, Text
 from onpath.lessons.symbols import marked_symbols
 from onpath.lessons.words import Words
 
@@ -33,6 +33,8 @@ class StepPart:
         states: of a derivation's lines; None if the page's script judges them.
         hints: how many hints of a task are shown; None if the reader unfolds them.
         way: the way in which a task was passed; None if the page's script decides that.
+        second: of a question, its second try, if the page has it.
+        second_of: of a second try, the step and the block of its question; else empty.
         remark: what is said above a question; may be empty.
         aside: what the student has said beside an answer, if anything.
     """
@@ -48,6 +50,8 @@ class StepPart:
     states: tuple[LineState, ...] | None = None
     hints: int | None = None
     way: int | None = None
+    second: StepPart | None = None
+    second_of: str = ""
     remark: str = ""
     aside: Markup | None = None
 
@@ -61,7 +65,33 @@ def part_of(
         html = marked(block.html, lesson.steps, index)
         block = replace(block, html=filled(html, lesson.steps, index, Notes(), words))
     order = tuple(range(len(getattr(block, "options", ()))))
-    return StepPart(KINDS[type(block)], block_index, block, here, order=order)
+    second = second_part(index, block_index, block)
+    return StepPart(KINDS[type(block)], block_index, block, here, order=order, second=second)
+
+
+def second_part(index: int, block_index: int, block: Block) -> StepPart | None:
+    """The second try at a question in a block of a step; None if it has none."""
+    if not isinstance(block, Choice | Quiz) or block.second is None:
+        return None
+    asked = block.second.asked
+    order = tuple(range(len(block.second.options)))
+    return StepPart(
+        kind=KINDS[type(asked)],
+        block_index=block_index,
+        block=asked,
+        order=order,
+        second_of=f"{index}.{block_index}",
+    )
+
+
+def predicted_second(lesson: Lesson, index: int) -> StepPart | None:
+    """The second try at the prediction that a step's run shows; None if there is none."""
+    if lesson.steps[index].kind == "run":
+        for at in (index, index - 1)[: index + 1]:
+            for block_index, block in enumerate(lesson.steps[at].blocks):
+                if isinstance(block, Prediction):
+                    return second_part(at, block_index, block)
+    return None
 
 
 def step_html(

@@ -13,7 +13,7 @@ import msgspec
 from onpath.app.channel.lesson_messages import LessonMessage, MeasuredMessage
 from onpath.app.common.templates import part_of_page
 from onpath.app.steps.block_data import block_data, curves_data, script_data
-from onpath.app.steps.step_html import StepPart, part_of, step_html
+from onpath.app.steps.step_html import StepPart, part_of, predicted_second, step_html
 from onpath.app.view.lesson_end import lesson_end
 from onpath.app.view.lesson_view import LessonView
 from onpath.app.view.lessons import route_line
@@ -22,6 +22,7 @@ from onpath.app.view.symbol_geometry import has_meaning
 from onpath.lessons.derivation.judged import judged
 from onpath.lessons.given import Answer, Given
 from onpath.lessons.option_order import LETTERS
+from onpath.lessons.progress import given_to
 from onpath.lessons.schema import (
     Choice,
     Derivation,
@@ -33,6 +34,7 @@ from onpath.lessons.schema import (
     Step,
     Text,
 )
+from onpath.lessons.second_try import SECOND_TRY, second_item
 from onpath.lessons.task_schema import Task
 from onpath.models.systems.robots import Robot
 
@@ -107,7 +109,11 @@ def _with_steps(message: LessonMessage, lesson: Lesson, run: LessonView) -> Less
 
 def _parts(lesson: Lesson, run: LessonView) -> list[StepPart]:
     """The parts of the open step that are meant for the student's answers."""
-    return [
+    second = predicted_second(lesson, run.index)
+    happened = run.truth is not None and not run.playing
+    tried = None if second is None or not happened else _tried(lesson, second, run)
+    parts = [] if tried is None else [tried]
+    return parts + [
         part
         for block_index in range(len(lesson.steps[run.index].blocks))
         if (part := _part(lesson, block_index, run)) is not None
@@ -136,9 +142,13 @@ def _part(lesson: Lesson, block_index: int, run: LessonView) -> StepPart | None:
         unknown = run.is_unknown(key)
         hidden = unknown or run.is_test or run.is_voted_on(key)
         chosen = None if hidden else notes.quiz.get(key)
+        second = None if part.second is None or hidden else _tried(lesson, part.second, run)
         told = chosen is not None and (key in notes.twice or block.options[chosen].right)
+        if block.second is not None:
+            told = chosen is not None and (second is None or second.told)
         return replace(
             part,
+            second=second,
             order=run.order(block, key),
             lettered=True,
             told=told,
@@ -156,6 +166,17 @@ def _part(lesson: Lesson, block_index: int, run: LessonView) -> StepPart | None:
     return replace(part, told=told, replies=() if known is None or told else (known,))
 
 
+def _tried(lesson: Lesson, part: StepPart, run: LessonView) -> StepPart | None:
+    """A second try, once it has begun; what is right is told after its answer."""
+    at, block_index = map(int, part.second_of.split("."))
+    if not run.is_second_tried(lesson, at, block_index):
+        return None
+    item = second_item(at, block_index)
+    order = run.order(part.block, item) if isinstance(part.block, Quiz) else ()
+    given = given_to(run.notes, item)
+    return replace(part, order=order, told=any(not each.lost for each in given))
+
+
 def _asked(lesson: Lesson, index: int, run: LessonView) -> StepPart:
     """A prediction; what is right is told by the step that shows it."""
     blocks = lesson.steps[index].blocks
@@ -164,11 +185,18 @@ def _asked(lesson: Lesson, index: int, run: LessonView) -> StepPart:
     assert isinstance(block, Prediction)
     happened = run.step_is("run") and run.truth is not None and not run.playing
     aside = part_of_page("lesson/beside.html", block=block, answer=answer, words=run.words)
+    part = part_of(lesson, index, block_index, run.words)
+    judged = happened and answer is not None and not run.is_voting
+    second = None if part.second is None or not judged else _tried(lesson, part.second, run)
+    told = judged and (second is None or second.told)
+    missed = judged and not told and answer is not None and answer.option is not None
     return replace(
-        part_of(lesson, index, block_index, run.words),
+        part,
         order=run.order(block) if isinstance(block, Choice) else (),
         lettered=True,
-        told=happened and answer is not None and not run.is_voting,
+        told=told,
+        replies=(answer.option,) if missed else (),
+        second=second,
         remark=_remark(block, run),
         aside=aside if aside.strip() else None,
     )
@@ -193,7 +221,8 @@ def _step(
     step: Step, lesson: Lesson, index: int, parts: list[StepPart], run: LessonView
 ) -> dict[str, Any]:
     """A step; a closed one has no blocks."""
-    known = {part.block_index: _block(part, lesson, index, run) for part in parts}
+    own = [part for part in parts if not part.second_of]
+    known = {part.block_index: _block(part, lesson, index, run) for part in own}
     count = len(step.blocks) if parts else 0
     return {
         "kind": step.kind,
@@ -221,7 +250,9 @@ def _notes(run: LessonView) -> dict[str, Any]:
     notes, found, answer, key = run.notes, run.prediction(), run.answer(), f"{run.index}."
     asked = "" if found is None else found[0]
     known = answer is not None and not run.is_unknown()
+    tried = [each for each in notes.given if each.item.endswith(SECOND_TRY)]
     here = [each for each in notes.given if each.way is not None or each.item.startswith(key)]
+    here += [each for each in tried if f"{asked}." != key and each.item.startswith(f"{asked}.")]
     if answer is not None:
         here.append(Given(asked, answer=answer if known else Answer()))
     truth = None if run.playing or run.is_voting else run.truth

@@ -16,6 +16,7 @@ from onpath.lessons.kept.option_keys import why_key
 from onpath.lessons.progress import Notes, Progress
 from onpath.lessons.right import is_right
 from onpath.lessons.schema import Block, Choice, Lesson, Quiz, Sketch
+from onpath.lessons.second_try import SECOND_TRY, second_at
 
 
 def marked(lesson: Lesson, given: Given) -> Given:
@@ -103,6 +104,8 @@ class _Search:
 
     def _asked(self, key: str) -> Block | None:
         """The prediction or the question; None for a task, or if there is none any more."""
+        if key.endswith(SECOND_TRY):
+            return second_at(self.lesson.steps, key)
         step, _, block = key.partition(".")
         steps = self.lesson.steps
         if not step.isdecimal() or int(step) >= len(steps):

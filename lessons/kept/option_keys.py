@@ -10,6 +10,7 @@ import hashlib
 from collections.abc import Sequence
 
 from onpath.lessons.schema import Choice, Quiz, Sketch, Step
+from onpath.lessons.second_try import second_at, second_item
 
 Keys = dict[str, tuple[str, ...]]
 """Key of the notes -> keys of the options there, in the author's order."""
@@ -25,6 +26,9 @@ def keys_of(steps: Sequence[Step]) -> Keys:
         for number, block in enumerate(step.blocks):
             if isinstance(block, Quiz):
                 keys[f"{index}.{number}"] = tuple(option.key for option in block.options)
+            second = second_at(steps, second_item(index, number))
+            if isinstance(second, Quiz):
+                keys[second_item(index, number)] = tuple(option.key for option in second.options)
     return keys
 
 

@@ -12,10 +12,12 @@ from onpath.lessons.measures.responses import WITH_SIGN
 from onpath.lessons.measures.stated import zero_faults
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import (
+    Choice,
     Derivation,
     NumberQuestion,
     Option,
     Prediction,
+    Quiz,
     Sketch,
     SketchShape,
 )
@@ -60,7 +62,7 @@ def prediction_faults(prediction: Prediction) -> Iterator[str]:
         for shape in prediction.shapes:
             yield from _shape_faults(shape, prediction)
     else:
-        yield from option_faults(prediction.options)
+        yield from choice_faults(prediction)
 
 
 def _shape_faults(shape: SketchShape, sketch: Sketch) -> Iterator[str]:
@@ -120,6 +122,27 @@ def derivation_faults(block: Derivation) -> Iterator[str]:
             if is_same(value, right, 2 * line.tolerance):
                 yield f"wrong formula {each.formula!r}: it is the right one"
         values |= {line.name: right} if line.name else {}
+
+
+def choice_faults(block: Choice | Quiz) -> Iterator[str]:
+    """The faults of a choice: of its options, and of its second try."""
+    yield from option_faults(block.options)
+    second = block.second
+    if second is None:
+        return
+    if (second.number is None) != bool(second.options) or not second.question.strip():
+        yield "second: it has a question, and either options or a number"
+    elif second.number is None:
+        yield from (f"second: {fault}" for fault in option_faults(second.options))
+        if second.answer or second.unit or second.tolerance:
+            yield "second: each option has its answer; tolerance, unit and answer are a number's"
+    elif not second.answer.strip():
+        yield "second: a number has an answer"
+    asked = second.asked
+    if isinstance(asked, NumberQuestion):
+        yield from (f"second: {fault}" for fault in number_faults(asked))
+    if " ".join(second.question.split()) == " ".join(block.question.split()):
+        yield "second: it asks for the reason or for another number, not the same once more"
 
 
 def option_faults(options: Sequence[Option]) -> Iterator[str]:

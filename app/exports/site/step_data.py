@@ -9,7 +9,7 @@ from onpath.app.common.templates import Markup
 from onpath.app.exports.site.step_figures import StepFigure, figure_of, lacking_words, step_figure
 from onpath.app.exports.site.task_data import task_data
 from onpath.app.steps.block_data import block_data
-from onpath.app.steps.step_html import StepPart, part_of, step_html
+from onpath.app.steps.step_html import StepPart, part_of, predicted_second, step_html
 from onpath.lessons.adaptive.branches import answers_meant
 from onpath.lessons.schema import Lesson, Step, Text
 from onpath.lessons.task_schema import Once, Reference, Setting, Task
@@ -57,6 +57,7 @@ def site_step(
         )
         for block_index, block in enumerate(step.blocks)
     ]
+    second = predicted_second(lesson, index)
     script, lacking = figure.script(step.script), lacking_words(figure, words)
     data = {
         "kind": step.kind,
@@ -72,7 +73,7 @@ def site_step(
     html = step_html(
         lesson,
         index,
-        parts,
+        [second, *parts] if second else parts,
         words,
         plays=script is not None,
         lacking=", ".join(f"{name} ({why})" if why else name for name, why in lacking.items()),

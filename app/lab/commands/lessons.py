@@ -160,26 +160,28 @@ class ShowHint(Command):
 
 @dataclass(frozen=True, slots=True)
 class AnswerQuiz(_Answering):
-    """Choose an option of a question; `block` is its index in the step."""
+    """Choose an option of a question, or of its second try; `block` is its index in the step."""
 
     block: int
     option: int
+    second: bool = False
 
     @override
     def give(self, lab: Lab, sent: Sent) -> None:
-        lab.lessons.answer_quiz(self.block, self.option, sent)
+        lab.lessons.answer_quiz(self.block, self.option, sent, second=self.second)
 
 
 @dataclass(frozen=True, slots=True)
 class AnswerNumber(_Answering):
-    """Answer a question with a number; `block` is its index in the step."""
+    """Answer a question, or a second try, with a number; `block` is its index in the step."""
 
     block: int
     given: float
+    second: bool = False
 
     @override
     def give(self, lab: Lab, sent: Sent) -> None:
-        lab.lessons.answer_number(self.block, self.given, sent)
+        lab.lessons.answer_number(self.block, self.given, sent, second=self.second)
 
 
 @dataclass(frozen=True, slots=True)

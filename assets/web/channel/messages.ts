@@ -296,8 +296,8 @@ export type Command =
     | { do: "Act"; actions: Action[] }
     | { do: "AddPoint" }
     | { do: "AnswerInWords"; lesson?: string; step?: number; key?: string; block: number; typed: string }
-    | { do: "AnswerNumber"; lesson?: string; step?: number; key?: string; block: number; given: number }
-    | { do: "AnswerQuiz"; lesson?: string; step?: number; key?: string; block: number; option: number }
+    | { do: "AnswerNumber"; lesson?: string; step?: number; key?: string; block: number; given: number; second?: boolean }
+    | { do: "AnswerQuiz"; lesson?: string; step?: number; key?: string; block: number; option: number; second?: boolean }
     | { do: "BeginStepAnew" }
     | { do: "ChooseLaw"; side: string; law: string }
     | { do: "ChoosePath"; name: string }

@@ -2,6 +2,7 @@
 // connection, the process or the page. Each has a key, by which it counts once.
 
 import { recalled, remember } from "../core/memory"
+import { SECOND_TRY } from "../lessons/notes"
 import type { Command } from "./messages"
 
 /** An answer, with the step that asked for it. */
@@ -68,7 +69,8 @@ export class Outbox {
 }
 
 function itemOf(answer: Kept): string {
-    return "block" in answer ? `${answer.step}.${answer.block}` : String(answer.step)
+    const second = "second" in answer && answer.second ? SECOND_TRY : ""
+    return "block" in answer ? `${answer.step}.${answer.block}${second}` : String(answer.step)
 }
 
 function entryOf(lab: string): string {

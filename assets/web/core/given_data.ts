@@ -21,9 +21,10 @@ export interface Answer {
  *
  * A student's progress, the record of a class, the grade, and what a learning platform is told are all read from these. */
 export interface Given {
-    /** what was answered: a prediction, by step, a question, by step and block, or a task, by its id. */
+    /** what was answered: a prediction, by step, a question, by step and block, a second try (see `lessons.second_try`), or a
+     * task, by its id. */
     item: string
-    /** number of the answer to the item, from 1; one that only repeats the answer before it is none. */
+    /** number of the answer to the item, from 1, or 2 for a second try; one that only repeats the answer before it is none. */
     attempt?: number
     /** seconds since 1970; 0 if unknown. */
     time?: number

@@ -176,12 +176,32 @@ export interface DerivationData {
     states?: LineState[]
 }
 
+export interface ChoiceData {
+    kind: "choice" | "quiz"
+    right?: number
+    voted?: boolean
+    uncounted?: boolean
+    /** Whether something else is asked after a wrong answer. */
+    followed?: boolean
+    /** What that is; from a lab, once it is asked. */
+    second?: ChoiceData | NumberData
+}
+
+export interface NumberData {
+    kind: "number"
+    number?: number
+    tolerance?: number
+    wrong?: number[]
+    voted?: boolean
+    uncounted?: boolean
+}
+
 export type BlockData =
     // Links have actions: those above on a page without a server, those of channel/messages.ts in the lab.
     | { kind: "text"; links: (unknown[] | null)[]; when?: [string, number[]] }
     // A lab keeps what is right to itself until there is an answer, and while the class votes.
-    | { kind: "choice" | "quiz"; right?: number; voted?: boolean; uncounted?: boolean }
-    | { kind: "number"; number?: number; tolerance?: number; wrong?: number[]; voted?: boolean }
+    | ChoiceData
+    | NumberData
     | { kind: "open" }
     | DerivationData
     | SketchData

@@ -3,7 +3,7 @@
 import type { Given } from "../core/given_data"
 import type { BlockData, StepData } from "../core/lesson_data"
 import { statesOf } from "./derivation"
-import { given, givenTo, predicted, lastSaid, type Notes } from "./notes"
+import { given, givenTo, predicted, lastSaid, SECOND_TRY, type Notes } from "./notes"
 import { accepted } from "./own"
 import type { Grade } from "./progress"
 
@@ -11,8 +11,10 @@ const SECOND = 0.5 // what a right second answer counts
 
 /** What a prediction, by its step, or a question, by step and block, asks. */
 export function blockOf(steps: StepData[], item: string): BlockData | undefined {
-    const [step, place] = item.split("."), blocks = steps[Number(step)]?.blocks ?? []
-    return place === undefined ? blocks.find(({ kind }) => kind === "choice" || kind === "sketch") : blocks[Number(place)]
+    const [step, place, second] = item.split("."), blocks = steps[Number(step)]?.blocks ?? []
+    const asked = blocks[Number(place)]
+    if (second !== undefined) return asked && "second" in asked ? asked.second : undefined
+    return place === undefined ? blocks.find(({ kind }) => kind === "choice" || kind === "sketch") : asked
 }
 
 /** As `is_right` in lessons/right.py. */
@@ -41,7 +43,12 @@ export function gradeOf(steps: StepData[], notes: Notes): Grade {
             const item = block.kind === "task" ? block.id : `${i}.${j}`, events = givenTo(notes, item)
             if (block.kind === "choice" || block.kind === "sketch") parts.push(given(predicted(notes, i)))
             else if (block.kind === "open") parts.push(events.length > 0)
-            else if (block.kind === "quiz" || block.kind === "number") judged(events.length > 0, points(events.map(each => each.right ?? isRight(block, each) ?? false)))
+            else if (block.kind === "quiz" || block.kind === "number") {
+                const tried = givenTo(notes, `${item}${SECOND_TRY}`)[0], second = "second" in block ? block.second : undefined
+                const right = events.map(each => each.right ?? isRight(block, each) ?? false)
+                if (tried && second) right[1] = tried.right ?? isRight(second, tried) ?? false
+                judged(events.length > 0, points(right))
+            }
             else if (block.kind === "derivation") for (const line of statesOf(block, String(lastSaid(notes, item) ?? ""))) judged(line.closed, points(line.tries.map(each => each.verdict !== "wrong")))
             else if (block.kind === "task" && block.checks && !block.exploratory) judged(events.length > 0, Number(events.length > 0 && !isShown(block.hints, events[0]!)))
         })

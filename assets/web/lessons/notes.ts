@@ -29,6 +29,9 @@ export function givenTo(notes: Notes, item: string): Given[] {
     return notes.given.filter(each => each.item === item)
 }
 
+/** Ends the item of a second try, before which stand the step and the block of its question; see lessons/second_try.py. */
+export const SECOND_TRY = ".second"
+
 /** The answer to a prediction that counts: the first one that was not skipped; a skipped one is empty. */
 export function predicted(notes: Notes, step: number | string): Answer | undefined {
     const all = givenTo(notes, String(step)).filter(each => each.way === undefined)
@@ -53,7 +56,7 @@ export function passedTasks(notes: Notes): Record<string, { best: number; way: n
 export function noted(notes: Notes, answer: Omit<Given, "attempt">): Given | null {
     const before = givenTo(notes, answer.item), last = before.at(-1)
     if (last && says(last) === says(answer)) return null
-    const all = [...before, { ...answer, attempt: last ? (last.attempt ?? 1) + 1 : 1 }]
+    const all = [...before, { ...answer, attempt: last ? (last.attempt ?? 1) + 1 : answer.item.endsWith(SECOND_TRY) ? 2 : 1 }]
     const made = all.findIndex(each => !each.answer || given(each.answer)), judged = typeof all[0]!.right === "boolean"
     const kept = all.filter((_, i) => i === 0 || i === made || (judged && i === 1) || i === all.length - 1)
     notes.given = [...notes.given.filter(each => each.item !== answer.item), ...kept]

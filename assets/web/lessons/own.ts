@@ -1,6 +1,6 @@
 // Shows a student's own answers: numbers in texts, and texts for some answers only.
 
-import type { BlockData, PageData } from "../core/lesson_data"
+import type { NumberData, PageData } from "../core/lesson_data"
 import { general } from "../core/numbers"
 import { localized } from "../core/words"
 import { predicted, lastSaid, type Notes } from "./notes"
@@ -8,8 +8,6 @@ import { predicted, lastSaid, type Notes } from "./notes"
 const STATISTICS: Record<string, (values: number[]) => number> = {
     max: values => Math.max(...values), min: values => Math.min(...values), final: values => values[values.length - 1]!,
 }
-
-type NumberData = Extract<BlockData, { kind: "number" }>
 
 export function accepted(given: number, { number = NaN, tolerance = 0 }: NumberData): boolean {
     return Math.abs(given - number) <= tolerance * (1 + 1e-9)

@@ -2,7 +2,7 @@
 
 import { made } from "../core/dom"
 import { draftOf, keepDraft } from "../core/drafts"
-import type { BlockData, PageData } from "../core/lesson_data"
+import type { BlockData, ChoiceData, PageData } from "../core/lesson_data"
 import { localized, phrase } from "../core/words"
 import { givenTo, lastSaid } from "../lessons/notes"
 import { accepted, known } from "../lessons/own"
@@ -23,28 +23,53 @@ export function judged(page: PageData, element: Element, right: number | undefin
         const verdict = made("p", own === right ? "right" : "wrong", phrase(page, own === right ? "lesson.right" : "lesson.not_quite"))
         lines.push(verdict, made("div", "", ...answers(own)))
     }
-    if (own !== right) lines.push(made("p", "", made("b", "", phrase(page, "report.right"))), made("div", "", ...answers(right)))
+    if (own !== right) lines.push(...rightOne(page, element, right))
     return made("div", "judged", ...lines)
 }
 
 /** What is said to a first answer that is wrong, before the right one is shown. */
-function repliedTo(page: PageData, reply: Element | null): HTMLElement[] {
+export function repliedTo(page: PageData, reply: Element | null, followed = false): HTMLElement[] {
     const own = [...reply?.cloneNode(true).childNodes ?? []]
     const lines = [made("p", "wrong", phrase(page, "lesson.not_quite"))]
     if (own.length) lines.push(made("div", "", ...own))
-    return [...lines, made("p", "", phrase(page, "lesson.once_more"))]
+    return followed ? lines : [...lines, made("p", "", phrase(page, "lesson.once_more"))]
 }
 
-/** Make a question answerable. Returns what shows the answer, or what has become of it. */
-export function ask(page: PageData, element: HTMLElement, block: BlockData, key: string, student: Student): () => void {
+/** Which option of a question is right, and why. */
+function rightOne(page: PageData, element: Element, right: number): HTMLElement[] {
+    const answer = element.querySelector(`[data-answer="${right}"]`)!.cloneNode(true)
+    return [made("p", "", made("b", "", phrase(page, "report.right"))), made("div", "", ...answer.childNodes)]
+}
+
+/** Make the second try at a question answerable, which is asked once the question was missed. Its answer is followed by
+ * what was right there. Returns what shows it. */
+export function askAgain(page: PageData, element: HTMLElement, question: { element: HTMLElement; data: ChoiceData; isMissed: () => boolean }, key: string,
+    student: Student): () => void {
+    const { data } = question
+    const show = ask(page, element, data.second!, key, student, () => (data.right === undefined ? [] : rightOne(page, question.element, data.right)))
+    const reveal = () => {
+        element.hidden = !question.isMissed()
+        show()
+    }
+    reveal()
+    return reveal
+}
+
+/** Make a question answerable. Returns what shows the answer, or what has become of it.
+ * @param more of a second try: what stands below the answer to it. */
+export function ask(page: PageData, element: HTMLElement, block: BlockData, key: string, student: Student, more?: () => HTMLElement[]): () => void {
     const told = element.querySelector<HTMLElement>(".verdict")!
     const after = element.querySelector<HTMLDetailsElement>(".after") // a lab sends it with its verdict
     if (after) after.hidden = true
+    const below = made("div", "judged") // what was right before, after another number
+    if (more) element.append(below)
     const input = element.querySelector<HTMLInputElement | HTMLTextAreaElement>("input, textarea")!
     const button = made("button", "script-only", phrase(page, block.kind === "open" || page.test ? "answer.keep" : "answer.check"))
     button.type = "button"
     told.before(button)
-    if (block.kind !== "open" && !page.test && !("uncounted" in block && block.uncounted)) button.after(" ", made("span", "price", phrase(page, "answer.price")))
+    const followed = "followed" in block && block.followed === true
+    if (block.kind !== "open" && !page.test && !("uncounted" in block && block.uncounted))
+        button.after(" ", made("span", "price", phrase(page, more ? "answer.price_second" : followed ? "answer.price_followed" : "answer.price")))
     let shown: unknown, wasSending = false // the answer that is judged
     const kept = () => lastSaid(student.notes, key)
     const show = () => {
@@ -62,9 +87,11 @@ export function ask(page: PageData, element: HTMLElement, block: BlockData, key:
             return
         }
         const first = (givenTo(student.notes, key).at(-1)?.attempt ?? 1) === 1
+        if (more || (followed && block.right !== own)) close()
         if (block.kind === "quiz") {
-            if (block.right === undefined || (first && own !== block.right)) return told.replaceChildren(...repliedTo(page, element.querySelector(`[data-answer="${own}"]`)))
-            return told.replaceChildren(...judged(page, element, block.right, own as number).childNodes)
+            const isOpen = block.right === undefined || ((first || followed) && own !== block.right)
+            if (isOpen) return told.replaceChildren(...repliedTo(page, element.querySelector(`[data-answer="${own}"]`), followed))
+            return told.replaceChildren(...judged(page, element, block.right, own as number).childNodes, ...more?.() ?? [])
         }
         if (block.kind === "number") {
             const right = block.number !== undefined && accepted(own as number, block)
@@ -79,6 +106,11 @@ export function ask(page: PageData, element: HTMLElement, block: BlockData, key:
         if (!after) return
         after.hidden = false
         after.open = true
+        below.replaceChildren(...more?.() ?? [])
+    }
+    const close = () => { // it cannot be answered otherwise
+        button.hidden = true
+        element.querySelectorAll("input").forEach(each => (each.disabled = true))
     }
     const own = kept()
     if (own !== undefined) {

@@ -6,7 +6,7 @@ import { keepScroll } from "../core/drafts"
 import type { Answer, BlockData, PageData, TaskData } from "../core/lesson_data"
 import { phrase, type Texts } from "../core/words"
 import type { Verdict } from "../lessons/checks"
-import { noNotes } from "../lessons/notes"
+import { noNotes, SECOND_TRY } from "../lessons/notes"
 import type { Result, Student } from "../lessons/student"
 import type { ServerEngine } from "../channel/channel"
 import type { AnswerCommand } from "../channel/outbox"
@@ -35,10 +35,10 @@ class RemoteStudent implements Student {
         const given = { option, times, values, sure, reason, why }
         this.post({ do: "Predict", ...Object.fromEntries(Object.entries(given).filter(([, each]) => each !== undefined)) }, String(step))
     }
-    chooses(question: string, option: number): void { this.post({ do: "AnswerQuiz", block: placeOf(question), option }, question) }
-    gives(question: string, given: number): void { this.post({ do: "AnswerNumber", block: placeOf(question), given }, question) }
+    chooses(question: string, option: number): void { this.post({ do: "AnswerQuiz", ...placeOf(question), option }, question) }
+    gives(question: string, given: number): void { this.post({ do: "AnswerNumber", ...placeOf(question), given }, question) }
     reads(): void {} // the server shows the hints, and so knows
-    writes(question: string, typed: string): void { this.post({ do: "AnswerInWords", block: placeOf(question), typed }, question) }
+    writes(question: string, typed: string): void { this.post({ do: "AnswerInWords", block: placeOf(question).block, typed }, question) }
     derives(question: string, row: string): void { this.writes(question, row) } // the server adds it
     way(item: string): "" | "sending" | "sent" {
         if (this.engine.outbox.has(this.page.lesson, item)) return "sending"
@@ -53,9 +53,9 @@ class RemoteStudent implements Student {
     }
 }
 
-/** A question's number among the parts of its step. */
-function placeOf(question: string): number {
-    return Number(question.split(".")[1])
+/** A question's number among the parts of its step, and whether its second try is meant. */
+function placeOf(question: string): { block: number; second: boolean } {
+    return { block: Number(question.split(".")[1]), second: question.endsWith(SECOND_TRY) }
 }
 
 export class Column implements Robots {
@@ -237,8 +237,11 @@ export class Column implements Robots {
             else words.insertBefore(each, next)
         }
         if (form && !words.contains(form)) view?.offer(form)
-        for (const each of kept) if (parts.includes(each) && each.dataset["block"]) view?.prepare(Number(each.dataset["block"]))
-        const successor = at && kept.find(each => each.dataset["block"] === at.dataset["block"])
+        const fresh = kept.filter(each => parts.includes(each))
+        for (const each of fresh) if (each.dataset["block"]) view?.prepare(Number(each.dataset["block"]))
+        for (const each of fresh) if (each.dataset["second"]) view?.prepareSecond(each)
+        const nameOf = ({ dataset }: HTMLElement) => dataset["block"] ?? dataset["second"]
+        const successor = at && kept.find(each => nameOf(each) === nameOf(at))
         if (successor) (controlsOf(successor)[place] ?? successor.querySelector<HTMLElement>("summary, button"))?.focus({ preventScroll: true })
         if (view) this.follow()
         words.scrollTop = scrollTop // the browser has lost what it would keep in its place

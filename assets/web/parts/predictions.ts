@@ -6,7 +6,7 @@ import type { BlockData, PageData, Script, SketchData, StepData, Answer, Curves 
 import { phrase, significant, type Texts } from "../core/words"
 import { given, predicted, type Notes } from "../lessons/notes"
 import type { Student } from "../lessons/student"
-import { judged } from "./asked"
+import { judged, repliedTo } from "./asked"
 import { Chart, type Axes } from "./chart"
 import type { Span } from "./curves"
 import { Drawing } from "./drawing"
@@ -164,7 +164,12 @@ export class Comparison {
             const chart = (this.chart = chartOf(page, prediction, data, () => chart.draw()))
             drawn(chart, data, this.answer, undefined)
             this.elements.push(chart.element, this.again)
-        } else this.elements.push(judged(page, elementOf(prediction), data.right, this.answer?.option ?? undefined))
+        } else {
+            const own = this.answer?.option ?? undefined, element = elementOf(prediction)
+            const missed = data.second !== undefined && own !== undefined && own !== data.right
+            const lines = missed ? repliedTo(page, element.querySelector(`[data-answer="${own}"]`), true) : []
+            this.elements.push(missed ? made("div", "judged", ...lines) : judged(page, element, data.right, own))
+        }
     }
 
     /** The verdict on a choice, in words. */

@@ -4,9 +4,9 @@
 import { made } from "../core/dom"
 import type { BlockData, PageData } from "../core/lesson_data"
 import { phrase } from "../core/words"
-import { given, predicted, type Notes } from "../lessons/notes"
+import { given, givenTo, predicted, SECOND_TRY, type Notes } from "../lessons/notes"
 import type { Student } from "../lessons/student"
-import { ask } from "./asked"
+import { ask, askAgain } from "./asked"
 import { derive } from "./derivation"
 import { Comparison, elementOf, predict, predictionAt, type Prediction, type PredictionForm } from "./predictions"
 
@@ -37,7 +37,7 @@ export interface Places {
 export class StepView {
     /** The form of a prediction that is asked here. */
     form: PredictionForm | null = null
-    private readonly asked = new Map<number, () => void>() // by block: shows the answer to a question
+    private readonly asked = new Map<string, () => void>() // by block, or by item of a second try: shows the answer to a question
     private compared: Comparison | null = null
     private shown = "" // what it compares
     private played = false // whether the run was on when it was last looked at
@@ -52,6 +52,7 @@ export class StepView {
         const { section } = places
         section.dataset["kind"] = page.steps[index]!.kind
         page.steps[index]!.blocks.forEach((_, i) => this.prepare(i))
+        section.querySelectorAll<HTMLElement>("[data-second]").forEach(each => this.prepareSecond(each))
         section.querySelector(".play button")?.addEventListener("click", () => robots.play())
     }
 
@@ -63,14 +64,31 @@ export class StepView {
         if (!element) return // for other answers
         if (block.kind === "text") this.links(element, place, block.links)
         else if (block.kind === "quiz" || block.kind === "number" || block.kind === "open")
-            this.asked.set(place, ask(page, element, block, `${index}.${place}`, student))
-        else if (block.kind === "derivation") this.asked.set(place, derive(page, element, block, `${index}.${place}`, student))
+            this.asked.set(String(place), ask(page, element, block, `${index}.${place}`, student))
+        else if (block.kind === "derivation") this.asked.set(String(place), derive(page, element, block, `${index}.${place}`, student))
         else if (prediction?.step === index && prediction.block === place) {
             const before = this.form
             before?.board?.remove()
             this.form = predict(page, prediction, student)
             if (before) this.place()
         }
+    }
+
+    /** Make the second try at a question answerable: of a quiz in the step, or of the prediction that it shows. */
+    prepareSecond(element: HTMLElement): void {
+        const { page, student, prediction } = this
+        const place = element.dataset["second"]!, [at, i] = place.split(".").map(Number)
+        const data = page.steps[at!]?.blocks[i!]
+        if (!data || !("second" in data) || !data.second) return
+        const isPredicted = data.kind === "choice", key = `${place}${SECOND_TRY}`
+        const question = isPredicted && prediction ? elementOf(prediction) : this.block(i!)!
+        const isMissed = () => {
+            if (isPredicted && (this.waits || !this.happened || this.robots.playing)) return false
+            const own = isPredicted ? [predicted(this.notes, at!)] : givenTo(this.notes, place).map(each => each.answer)
+            const options = own.map(each => each?.option).filter(each => typeof each === "number")
+            return options.length > 0 && !options.includes(data.right ?? NaN)
+        }
+        this.asked.set(key, askAgain(page, element, { element: question, data, isMissed }, key, student))
     }
 
     /** The element of a part. */
