@@ -102,8 +102,8 @@ def moved(rng: np.random.Generator) -> list[list[Any]]:
 
 
 def in_a_lab(course: Course, moves: list[list[Any]]) -> tuple[Notes, list[list[Any]]]:
-    """The notes of a lab in which the same is done, and what it has not refused: a second try before
-    its question was missed, and another answer after it, which no page offers.
+    """The notes of a lab in which the same is done, and what it has not refused: a second try
+    before its question was missed, and another answer after it, which no page offers.
     """
     run = LessonState(course, Progress(lesson=NAME, notes={NAME: Notes(step=6)}))
     done = list[list[Any]]()
