@@ -10,6 +10,7 @@ import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.transforms import ScaledTranslation
 
 from onpath.app.common.palette import INK, Colour, of_law
 from onpath.lessons.words import ENGLISH, Words
@@ -179,12 +180,16 @@ def _draw_space(axes: Axes, experiment: Experiment, runs: list[Trajectory]) -> N
     axes.plot([], [], "s", color="0.3", label="end")
     if any(run.held.any() for run in runs):
         axes.plot([], [], color="0.5", alpha=0.3, linewidth=10, label="held back (right)")
-    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_aspect("equal", anchor="N")
     first, second = frame.axes
     axes.set_xlabel(f"$y_{first}$  [mm]")
     axes.set_ylabel(f"$y_{second}$  [mm]")
     axes.grid(alpha=0.25)
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.08), ncols=2, frameon=False)
+    below = axes.transAxes + ScaledTranslation(
+        0.0, -0.5, axes.get_figure(root=True).dpi_scale_trans
+    )
+    style = {"loc": "upper center", "ncols": 2, "frameon": False}
+    axes.legend(bbox_to_anchor=(0.5, 0.0), bbox_transform=below, **style)
 
 
 def _reproducible(path: Path) -> dict[str, None] | None:

@@ -284,7 +284,7 @@ def _position(entry: RobotEntry) -> Experiment:
     off = np.array([np.cos(-np.pi / 3), np.sin(-np.pi / 3)])
     return Experiment(
         name="position",
-        title="Experiment 1: to a place on the circle",
+        title="Experiment 1: to a place on the path",
         entry=entry,
         parameters=entry.parameters(task="position"),
         schedule=Schedule(r=entry.radius, duration=4.0),
