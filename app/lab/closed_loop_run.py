@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loop_vectors import loop_layouts, state_layout
 from onpath.models.closed_loop.loops import Loop
 from onpath.models.closed_loop.simulation import (
+    MOST_STARTS,
     Push,
     kind_of,
     paced,
@@ -373,10 +375,9 @@ class ClosedLoopRun:
                 row[name][:] = np.nan_to_num(first[name], posinf=0.0, neginf=0.0)
         for name in ("q", "v", "theta", "theta_rate", "theta_ref", "speed_ref", "u"):
             row[name][:] = state[name]
-        row["y"][:] = self.robot.endpoint(state["q"])
+        row["y"][:], distance = _place(self.robot, curve, state["q"].tobytes(), *state["theta"])
         row["force"][:] = 0.0
         row["speed"][:] = state["theta_rate"] * np.linalg.norm(curve.at(state["theta"], 1), axis=1)
-        distance = near_distance(self.robot.frame, curve, row["y"][None], row["theta"])
         self.slot[0].distances[:] = distance
 
     def _suits(self, curve: Curve) -> bool:
@@ -384,6 +385,14 @@ class ClosedLoopRun:
         kind, spline = self.kind, isinstance(curve, SplineCurve)
         same = kind.closed, kind.space, kind.spline
         return same == (curve.closed, curve.dimension == 3, spline)
+
+
+@lru_cache(maxsize=MOST_STARTS)
+def _place(robot: Robot, curve: Curve, q: bytes, theta: float) -> tuple[Array, float]:
+    """End-point at a configuration, shape (p,), [m], and its distance from the path near θ, [m];
+    computed once for the labs of a class, which begin at the same place."""
+    y = robot.endpoint(np.frombuffer(q))
+    return y, float(near_distance(robot.frame, curve, y[None], np.array([theta]))[0])
 
 
 def project(runs: Sequence[ClosedLoopRun], curve: Curve) -> None:

@@ -31,6 +31,7 @@ from onpath.models.systems.parameters import TICK, Parameters, look_ahead_time, 
 from onpath.models.systems.robots import Robot
 
 MOST = 8  # kernels that are kept, and as many of typed laws; 0.2 MB each
+MOST_STARTS = 64  # starts and settings that are kept, with their robots and paths
 NO_LIMIT = 1e300  # of `torque_limit`: cuts no torque, and is finite, as numbers in JSON must be
 
 
@@ -148,8 +149,9 @@ _kernel, _typed_kernel = lru_cache(maxsize=MOST)(_built), lru_cache(maxsize=MOST
 
 
 def forget_kernels() -> None:
-    """Build kernels again: a law's name means another law now."""
+    """Build kernels and plans again: a law's name means another law now."""
     _kernel.cache_clear()
+    _free_settings.cache_clear()
 
 
 def settings_vector(
@@ -164,6 +166,14 @@ def settings_vector(
     Returns:
         Shape (layouts.settings.size,).
     """
+    return pushed(layouts, _free_settings(robot, layouts, parameters, curve), push)
+
+
+@lru_cache(maxsize=MOST_STARTS)
+def _free_settings(
+    robot: Robot, layouts: LoopLayouts, parameters: Parameters, curve: Curve
+) -> Array:
+    """The settings where nothing acts; computed once for the labs of a class."""
     p, dt = robot.system.p, time_step(parameters)
     centre, weights, constant = _conic(curve) or (np.zeros(2), np.array([1.0, 1.0, 0.0]), 1.0)
     counts = parameters.encoder_counts
@@ -195,7 +205,7 @@ def settings_vector(
             "delay_ticks": parameters.delay * interval,
             "sensor_noise": parameters.sensor_noise,
             "seed": round(parameters.seed),
-            **_push_fields(push, p),
+            **_push_fields(FREE, p),
             **_composite_gains(layouts, parameters),
             "plant": robot.plant(parameters),
             "model": robot.model(parameters),

@@ -10,7 +10,7 @@ import numpy as np
 
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.loop_vectors import LoopLayouts
-from onpath.models.closed_loop.simulation import first_state
+from onpath.models.closed_loop.simulation import MOST_STARTS, first_state
 from onpath.models.errors import CodedError
 from onpath.models.paths.curves import PERIOD, Curve
 from onpath.models.paths.distance import closest_parameter
@@ -154,6 +154,14 @@ def start_state(
     Raises:
         ValueError: the start is out of reach.
     """
+    return _started(robot, layouts, curve, parameters, start).copy()
+
+
+@lru_cache(maxsize=MOST_STARTS)
+def _started(
+    robot: Robot, layouts: LoopLayouts, curve: Curve, parameters: Parameters, start: Start
+) -> Array:
+    """`start_state`, computed once for the labs of a class."""
     start = _begun(start, curve)
     q, v, theta = _motion(robot, curve, parameters, start)
     state = first_state(robot, layouts, curve, q, v)
@@ -168,6 +176,7 @@ def _begun(start: Start, curve: Curve) -> Start:
     return replace(start, theta=curve.begin) if start == ON_PATH else start
 
 
+@lru_cache(maxsize=MOST_STARTS)
 def check_start(robot: Robot, curve: Curve, parameters: Parameters, start: Start) -> None:
     """Refuse a start that is out of reach, near a singular configuration, or too fast.
 

@@ -73,12 +73,12 @@ def test_the_experiment_starts_as_far_off_any_plane() -> None:
 
 
 def test_robots_with_other_planes_share_their_loops_and_last_as_long_as_they_are_used() -> None:
-    own = FlexibleParameters(b=-0.3, d=0.45, centre=0.03)
+    own = FlexibleParameters(b=-0.31, d=0.45, centre=0.03)
     robot, kind = robot_for(own), Kind("path_following")
     assert robot is robot_for(own) and robot is not robot.core
     assert robot.core is robot_for(FlexibleParameters()) is robot.core.core
     assert kernel_of(robot, kind) is kernel_of(robot.core, kind)
-    assert robot.frame.numbers == (-0.3, 0.45, 0.03)
+    assert robot.frame.numbers == (-0.31, 0.45, 0.03)
     gone = weakref.ref(robot)
     del robot
     gc.collect()
