@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 import pytest
 
 from onpath.app.exports.guide import guide
-from onpath.lessons.course import BUILT_IN, read_course
+from onpath.lessons.course import BUILT_IN
 from onpath.lessons.words import Words
+from tests.support.built_in import built_in_course
 from tests.support.waiting import wait_for
 
 if TYPE_CHECKING:
@@ -34,7 +35,7 @@ LACKING = """letters => {
 
 def test_a_guide_has_the_font_of_its_formulas(browser: Browser, tmp_path: Path) -> None:
     language = "en"  # formulas have no words
-    course, _ = read_course([BUILT_IN])
+    course, _ = built_in_course()
     text = guide(course, BUILT_IN, course.lessons, Words(language))
     file = tmp_path / "guide.html"
     file.write_text(text, encoding="utf-8")

@@ -14,9 +14,10 @@ import pytest
 from onpath.app.lab.dry_runs.course_check import lab_at, solved
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.lessons.action_schema import Action, Script, Value
-from onpath.lessons.course import BUILT_IN, REFERENCE, read_course, read_references
+from onpath.lessons.course import BUILT_IN, REFERENCE, read_references
 from onpath.lessons.task_schema import Task
 from tests.support.browser import BLUR
+from tests.support.built_in import built_in_course
 from tests.support.site_export import exported_site
 from tests.support.site_reader import SiteReader
 from tests.support.site_tasks import ONLY_IN_LAB, ROUGH
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.thorough
 
-COURSE = read_course([BUILT_IN])[0]
+COURSE = built_in_course()[0]
 STILL = "Object.getPrototypeOf(site.stage.figure.engine).pass = () => false"
 """Time passes only when a test lets it."""
 FOLLOWED = """seconds => {

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from onpath.app.lab.dry_runs.step_truth import computed_truth
-from onpath.lessons.course import BUILT_IN, read_course
 from onpath.lessons.words import ENGLISH
+from tests.support.built_in import built_in_course
 from tests.support.site_export import LESSON, exported_site
 from tests.support.site_reader import WAIT, SiteReader
 from tests.support.waiting import wait_for
@@ -30,7 +30,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.parametrize("step", [2, 8])
 def test_what_happens_is_what_happens_in_the_lab(browser: Browser, site: Path, step: int) -> None:
-    lesson = read_course([BUILT_IN])[0].lesson(LESSON, "en")
+    lesson = built_in_course()[0].lesson(LESSON, "en")
     truth = computed_truth(lesson, step - 1)
     assert truth
     reader = SiteReader(browser, f"{(site / LESSON).as_uri()}.html#{step}")

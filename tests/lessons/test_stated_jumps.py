@@ -7,8 +7,8 @@ import pytest
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
-from onpath.lessons.course import BUILT_IN, read_course
 from onpath.lessons.task_schema import Bound
+from tests.support.built_in import built_in_course
 from tests.support.lab import FRAME, RIGHT, do, loop_cache
 
 pytestmark = pytest.mark.thorough
@@ -19,7 +19,7 @@ WAIT, WINDOW = 8.0, 6.0  # [s], as the task says
 
 def opened() -> tuple[Lab, float]:
     """The step with the task, and the bound that the task asks for, [m]."""
-    lab = Lab(loop_cache(), course=read_course([BUILT_IN])[0])
+    lab = Lab(loop_cache(), course=built_in_course()[0])
     do(lab, c.OpenLesson(LESSON))
     assert lab.lessons.lesson is not None
     for place, step in enumerate(lab.lessons.lesson.steps):

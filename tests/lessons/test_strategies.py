@@ -12,9 +12,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from onpath.lessons.course import BUILT_IN, Course, read_course
+from onpath.lessons.course import Course
 from onpath.lessons.schema import Front, Lesson, Option, Quiz, Step
 from onpath.lessons.strategies import ALLOWED, FEWEST, STRATEGIES, rate, rates
+from tests.support.built_in import built_in_course
 
 marks = st.lists(st.booleans(), min_size=2, max_size=4)
 
@@ -30,7 +31,7 @@ def test_a_rate_has_the_mean_and_deviation_of_chance(questions: list[list[bool]]
 
 
 def test_the_built_in_questions_cannot_be_answered_by_their_form() -> None:
-    course, problems = read_course([BUILT_IN])
+    course, problems = built_in_course()
     found = rates(course)
     assert not problems
     assert [f"{each.group} {each.strategy} {each}" for each in found if each.suspicious] == []

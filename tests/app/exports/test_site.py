@@ -17,7 +17,7 @@ from onpath.app.server.built_in_course import built_in_course
 from onpath.app.steps.player_words import player_words
 from onpath.app.view.page_words import words_message
 from onpath.assets import asset_path
-from onpath.lessons.course import BUILT_IN, REFERENCE, read_course, read_references
+from onpath.lessons.course import BUILT_IN, REFERENCE, read_references
 from onpath.lessons.lecture import LECTURE
 from onpath.lessons.schema import Text
 from onpath.lessons.words import ENGLISH
@@ -70,7 +70,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_without_scripts_all_of_a_lesson_is_there(site: Path, language: str) -> None:
     name = f"{LESSON}.html" if language == "en" else f"{LESSON}.{language}.html"
     seen = Seen((site / name).read_text("utf-8"))
-    lesson = read_course([BUILT_IN])[0].lesson(LESSON, language)
+    lesson = built_in_course().lesson(LESSON, language)
     words = " ".join(seen.text.split())
     for step in lesson.steps:
         for block in step.blocks:
@@ -175,7 +175,7 @@ def _keys(line: str) -> list[str]:
 
 
 def test_a_task_is_offered_if_its_solution_can_be_done_here() -> None:
-    course, offered = read_course([BUILT_IN])[0], dict[str, bool]()
+    course, offered = built_in_course(), dict[str, bool]()
     for name in course.lessons:
         lesson = course.lesson(name, "en")
         references, _ = read_references(lesson, BUILT_IN / name / REFERENCE)
@@ -192,7 +192,7 @@ def test_a_task_is_offered_if_its_solution_can_be_done_here() -> None:
 
 
 def test_a_bent_link_is_not_called_stable_where_its_output_changes() -> None:
-    lesson = read_course([BUILT_IN])[0].lesson("07-flexible-link", "en")
+    lesson = built_in_course().lesson("07-flexible-link", "en")
     either, flexible = ENGLISH("stop.bent_or_unstable"), ROBOTS["flexible"]
     reasons = flexible.make(flexible.parameters()).reasons(None, flexible.parameters())
     assert [ENGLISH.sentence(reason) for reason in reasons].count(either) == 1

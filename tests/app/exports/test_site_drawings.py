@@ -18,12 +18,12 @@ from onpath.app.exports.standalone.figure_data import figure_data
 from onpath.app.scene.mass_nodes import SIDES, ellipse
 from onpath.app.scene.tube_nodes import tube_shape
 from onpath.app.view.label_geometry import label_function
-from onpath.lessons.course import BUILT_IN, read_course
 from onpath.lessons.words import ENGLISH
 from onpath.models.arrays import Array
 from onpath.models.control.bend_limit import speed_on
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.robots import Robot
+from tests.support.built_in import built_in_course
 from tests.support.cases import drawn
 from tests.support.drawings import letters
 from tests.support.node_page import judging_page
@@ -172,7 +172,7 @@ def test_the_speed_that_is_told_is_the_one_at_which_a_drawing_is_drawn() -> None
 
 @pytest.mark.thorough
 def test_a_step_has_the_drawings_that_it_shows_and_switches_for_all() -> None:
-    course = read_course([BUILT_IN])[0]
+    course = built_in_course()[0]
     lessons = [course.lesson(name, "en") for name in course.lessons]
     steps = [(lesson, index) for lesson in lessons for index in range(len(lesson.steps))]
     scenes = [(*step, step[0].scene_at(step[1])) for step in steps]

@@ -13,9 +13,10 @@ import pytest
 
 from onpath.app.exports.site import step_data
 from onpath.app.exports.site.step_data import site_step
-from onpath.lessons.course import BUILT_IN, REFERENCE, Course, read_course, read_references
+from onpath.lessons.course import BUILT_IN, REFERENCE, Course, read_references
 from onpath.lessons.words import ENGLISH
 from onpath.models.arrays import Array
+from tests.support.built_in import built_in_course
 from tests.support.node_page import NodePage, judging_page, needs_node
 from tests.support.site_export import LESSON
 
@@ -217,7 +218,7 @@ def test_notes_of_earlier_packages_are_read(page: NodePage) -> None:
 
 @pytest.fixture(scope="module")
 def course() -> Course:
-    return read_course([BUILT_IN])[0]
+    return built_in_course()[0]
 
 
 @pytest.fixture
@@ -285,7 +286,7 @@ def graded(page: NodePage, steps: Steps, notes: Notes) -> tuple[float, float | N
     return found["progress"], found["score"]
 
 
-NAMES = [*read_course([BUILT_IN])[0].lessons]
+NAMES = [*built_in_course()[0].lessons]
 
 
 @pytest.mark.usefixtures("no_figures")

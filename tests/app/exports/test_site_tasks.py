@@ -7,13 +7,14 @@ import pytest
 from onpath.app.exports.standalone.setting_places import Unsupported
 from onpath.app.lab.dry_runs.course_check import lab_at, solved
 from onpath.app.lab.loops.loop_cache import LoopCache
-from onpath.lessons.course import BUILT_IN, REFERENCE, read_course, read_references
+from onpath.lessons.course import BUILT_IN, REFERENCE, read_references
+from tests.support.built_in import built_in_course
 from tests.support.site_scripts import needs_node, play_on_site
 from tests.support.site_tasks import ONLY_IN_LAB, ROUGH
 
 pytestmark = [pytest.mark.thorough, needs_node]
 
-COURSE = read_course([BUILT_IN])[0]
+COURSE = built_in_course()[0]
 
 
 @pytest.mark.parametrize("name", COURSE.lessons)

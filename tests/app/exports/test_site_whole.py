@@ -12,7 +12,7 @@ import pytest
 
 from onpath.app.exports.site.step_data import SiteStep, site_step
 from onpath.app.exports.site.step_figures import STANDS_FOR
-from onpath.lessons.course import BUILT_IN, REFERENCE, read_course, read_references
+from onpath.lessons.course import BUILT_IN, REFERENCE, read_references
 from onpath.lessons.labels import parameter_label
 from onpath.lessons.schema import Lesson, Step, Text
 from onpath.lessons.task_schema import Reference, Task
@@ -20,10 +20,11 @@ from onpath.lessons.words import ENGLISH, Words
 from onpath.models.closed_loop.lab_settings import SETTINGS
 from onpath.models.control.settable import specs
 from onpath.models.systems.catalogue import ROBOTS
+from tests.support.built_in import built_in_course
 
 pytestmark = pytest.mark.thorough
 
-COURSE = read_course([BUILT_IN])[0]
+COURSE = built_in_course()[0]
 BUTTONS = {"hold": "run.hold_both", "run": "run.pause", "reset": "run.reset", "step": "run.step"}
 STRONG = re.compile(r"<(?:strong|b)>(.*?)</(?:strong|b)>")
 FOLDS = re.compile(r"<details.*?</details>", re.DOTALL)
