@@ -117,6 +117,11 @@ SOLUTIONS: dict[str, dict[str, tuple[Gesture, ...]]] = {
             *(Enter("Target", 1.57), Key("x"), Wait(3)),
         ),
     },
+    "09c-sections-iv-and-v": {
+        "two-readings": (
+            *(Wait(1), Enter("Speed", -2), Wait(2.5), Choose("Plant", "lagrangian"), Wait(0.5)),
+        ),
+    },
 }
 
 
