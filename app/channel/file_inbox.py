@@ -6,11 +6,12 @@ import time
 from collections.abc import Callable
 from weakref import WeakSet
 
-from onpath.app.channel.file_messages import DropFile, SendFile, SendPart
+from onpath.app.channel.file_messages import DropFile, LogFile, SendFile, SendPart
 from onpath.app.common.allowance import Allowance
 from onpath.models.errors import CodedError
 
 MOST_BYTES = 1_000_000  # [B] of a file with a path
+MOST_LOG_BYTES = 8_000_000  # [B] of the log of a real arm
 MOST_TOGETHER = 50_000_000  # [B], of the files of all pages that are under way, and that are kept
 SECONDS = 30.0  # [s] that a file may take from its first message to its last
 FILES, FILES_PER_SECOND = 10, 0.1
@@ -23,8 +24,9 @@ class FileInbox:
     """Takes the files of one page, one at a time, of limited size, in limited time, a few in a row.
 
     Args:
-        largest: size of a file, [B].
+        largest: size of a file with a path, [B].
         clock: monotonic time, [s].
+        largest_log: size of a log, [B].
 
     Attributes:
         file: that is under way, or None.
@@ -32,8 +34,13 @@ class FileInbox:
         kept: number and content of the last one that was whole, which can be read again.
     """
 
-    def __init__(self, largest: int, clock: Callable[[], float] = time.monotonic) -> None:
-        self._largest, self._clock = largest, clock
+    def __init__(
+        self,
+        largest: int,
+        clock: Callable[[], float] = time.monotonic,
+        largest_log: int = MOST_LOG_BYTES,
+    ) -> None:
+        self._largest, self._largest_log, self._clock = largest, largest_log, clock
         self._allowance = Allowance(FILES, FILES_PER_SECOND, clock)
         self._content, self._since = bytearray(), 0.0
         self._repeats = Allowance(AGAIN, AGAIN_PER_SECOND, clock)
@@ -62,8 +69,9 @@ class FileInbox:
                 raise CodedError("error.file_often")
             self.kept = (file.number, self.kept[1])
             return self.kept[1]
-        if file.size > self._largest:
-            raise CodedError("error.file_size", most=f"{self._largest / 1e6:g}")
+        largest = self._largest_log if isinstance(file.use, LogFile) else self._largest
+        if file.size > largest:
+            raise CodedError("error.file_size", most=f"{largest / 1e6:g}")
         self.kept = None
         together = sum(each.file.size for each in _inboxes if each.file is not None)
         if together + file.size > MOST_TOGETHER or not self._allowance.take():

@@ -8,6 +8,7 @@ from msgspec import Meta, Struct
 
 LONGEST_NAME = 200  # [characters] of a file's name
 MOST_PARTS = 200  # lines of a file that are shown and can be chosen
+MOST_QUANTITIES = 100  # that a log can have
 
 # From the page
 
@@ -35,6 +36,22 @@ class PathFile(Struct, frozen=True, forbid_unknown_fields=True, tag_field="kind"
     parts: Annotated[tuple[Part, ...], Meta(max_length=MOST_PARTS)] = ()
 
 
+Column = Annotated[str, Meta(max_length=LONGEST_NAME)]
+
+
+class LogFile(Struct, frozen=True, forbid_unknown_fields=True, tag_field="kind", tag="log"):
+    """The log of a real arm, which is drawn over the plots.
+
+    Attributes:
+        columns: the file's names, or places, of the robot's quantities, by name; what is missing is
+            guessed.
+        units: of these columns, or their sizes in SI units; those that are missing are guessed.
+    """
+
+    columns: Annotated[dict[Column, Column], Meta(max_length=MOST_QUANTITIES)] = {}
+    units: Annotated[dict[Column, Column], Meta(max_length=MOST_QUANTITIES)] = {}
+
+
 class SendFile(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="send"):
     """A file will come in parts: the first after the answer to this, `FileMessage`, and each
     further one after the answer to the one before.
@@ -51,7 +68,7 @@ class SendFile(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", 
     number: int
     name: Annotated[str, Meta(max_length=LONGEST_NAME)]
     size: Annotated[int, Meta(ge=0)]
-    use: PathFile
+    use: PathFile | LogFile
     again: int = 0
 
 
@@ -107,6 +124,24 @@ class PathHelp(Struct, frozen=True):
     radius: float
 
 
+class LogQuantity(Struct, frozen=True):
+    """A quantity of the robot in a log.
+
+    Attributes:
+        name: such as "q1".
+        column: of the file that is read as it; empty if there is none.
+        unit: in which it is read.
+        units: those that it may have.
+        is_optional: whether the file need not have it.
+    """
+
+    name: str
+    column: str
+    unit: str
+    units: tuple[str, ...]
+    is_optional: bool
+
+
 class FileMessage(Struct, frozen=True, tag_field="is", tag="file"):
     """How far the server is with a file of the page.
 
@@ -117,6 +152,8 @@ class FileMessage(Struct, frozen=True, tag_field="is", tag="file"):
         why: it is refused, in a sentence in the page's language; else empty.
         lines: those in the file as they lie in it, each x, y, x, y, … from 0 to 1000; y points up.
         helps: what would help.
+        columns: names of a log's columns.
+        quantities: what is read from them.
     """
 
     number: int
@@ -125,6 +162,8 @@ class FileMessage(Struct, frozen=True, tag_field="is", tag="file"):
     why: str = ""
     lines: tuple[tuple[int, ...], ...] = ()
     helps: tuple[PathHelp, ...] = ()
+    columns: tuple[str, ...] = ()
+    quantities: tuple[LogQuantity, ...] = ()
 
 
 class DownloadMessage(Struct, frozen=True, tag_field="is", tag="download"):

@@ -26,7 +26,7 @@ from onpath.app.channel.file_messages import (
 )
 from onpath.app.channel.form_messages import AskForm, FormMessage, SetField, ValuesMessage
 from onpath.app.channel.lesson_messages import LessonMessage, MeasuredMessage
-from onpath.app.channel.motion_messages import FrameMessage, PathMessage, Plot
+from onpath.app.channel.motion_messages import FrameMessage, LogMessage, PathMessage, Plot
 from onpath.app.channel.sheet_messages import (
     ClassMessage,
     Compared,
@@ -189,6 +189,7 @@ LabMessage = (
     | WordsMessage
     | FrameMessage
     | PathMessage
+    | LogMessage
     | LitMessage
     | StateMessage
     | LessonMessage

@@ -54,6 +54,21 @@ class FrameMessage(Struct, tag_field="is", tag="frame", omit_defaults=True):
     straight: list[list[int]] | UnsetType = UNSET
 
 
+class LogMessage(Struct, frozen=True, tag_field="is", tag="log"):
+    """The log of a real arm that is drawn over the plots, when it or the path changes.
+
+    Attributes:
+        file: name of its file; empty: there is no log.
+        step: from one row to the next, [s]; the first one is at 0.
+        fields: names of fields as in `FrameMessage`, with the number of units that an SI unit has,
+            and each of its numbers in all rows; null where it is not known.
+    """
+
+    file: str = ""
+    step: float = 0.0
+    fields: tuple[tuple[str, float, tuple[tuple[int | None, ...], ...]], ...] = ()
+
+
 class PathMessage(Struct, frozen=True, tag_field="is", tag="path"):
     """The drawn path, when it changes.
 

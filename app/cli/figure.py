@@ -43,6 +43,12 @@ class FigureCommand:
     """Title above the figure."""
     language: str = "en"
     """Language of the page."""
+    log: Path | None = None
+    """Draw the log of a real arm over the plots; a file as for onpath identify."""
+    column: Repeated = ()
+    """A column of the log, as for identify; repeat for more."""
+    unit: Repeated = ()
+    """Unit of a column of the log, as for identify; repeat for more."""
     file_options: FileOptions = NO_OPTIONS
 
     def run(self) -> None:
@@ -72,6 +78,9 @@ class FigureCommand:
             choices=laws_named(self.choice, (), calls=False),
             title=self.title,
             language=self.language,
+            log=self.log,
+            columns=assignments(self.column, "--column"),
+            units=assignments(self.unit, "--unit"),
             **settings,
         )
         file = made.save(self.file)

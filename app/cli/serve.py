@@ -19,6 +19,7 @@ from onpath.app.cli.robot_options import NO_OPTIONS, FileOptions
 
 if TYPE_CHECKING:
     from onpath.app.classroom.classroom import Classroom
+    from onpath.app.lab.shown_log import ShownLog
     from onpath.models.paths.path_design import PathDesign
     from onpath.models.systems.robots import RobotEntry
 
@@ -45,6 +46,12 @@ class Serve:
     set: Repeated = ()
     """Set a parameter of the robot, or one of the lab's own settings, of new labs, as name=value;
     repeat for more."""
+    log: Path | None = None
+    """Draw the log of a real arm over the plots of new labs; a file as for onpath identify."""
+    column: Repeated = ()
+    """A column of the log, as for identify; repeat for more."""
+    unit: Repeated = ()
+    """Unit of a column of the log, as for identify; repeat for more."""
     lessons: Path | None = None
     """A folder with lessons of your own, shown after the built-in ones."""
     database: str | None = None
@@ -138,6 +145,7 @@ class Serve:
                     path=self._path(entry),
                     law=law,
                     settings=self._settings(entry),
+                    log=self._logged(entry),
                     classrooms=classrooms,
                     most_clients=self.most_clients,
                     retention=Retention(self.keep_days, self.most_labs, self.keep_class_days),
@@ -189,6 +197,23 @@ class Serve:
                 raise unknown_name(name, list(known), "setting")
             checked(known[name], name, value)
         return given
+
+    def _logged(self, entry: RobotEntry) -> ShownLog | None:
+        """The log over the plots of new labs.
+
+        Raises:
+            ValueError, OSError: it cannot be read, or is not one of this robot.
+        """
+        from onpath.app.common.user_files import user_file
+        from onpath.app.lab.shown_log import read_shown_log
+
+        columns = assignments(self.column, "--column")
+        units = assignments(self.unit, "--unit")
+        if self.log is None and (columns or units):
+            raise ValueError("--column and --unit are those of a log: add --log and a file")
+        if self.log is None:
+            return None
+        return read_shown_log(user_file(self.log), entry, columns, units)
 
     def _path(self, entry: RobotEntry) -> PathDesign | None:
         """The path of new labs; None: the usual one."""

@@ -57,7 +57,7 @@ class Exporter:
 
     def picture(self) -> None:
         """Request a picture of the plots."""
-        self._ask("onpath.png", picture_file, in_words=True, names_path=True)
+        self._ask("onpath.png", picture_file, in_words=True, names_path=True, with_log=True)
 
     def lines(self) -> None:
         """Request a picture of what the robots have written."""
@@ -141,6 +141,7 @@ class Exporter:
         make: Callable[..., bytes],
         in_words: bool = False,
         names_path: bool = False,
+        with_log: bool = False,
     ) -> None:
         def start(lab: Lab) -> None:
             simulation, words = lab.simulation, lab.words
@@ -149,11 +150,13 @@ class Exporter:
                 lab.show_message(words("export.nothing"), "warning")
                 self._under_way = False
                 return
-            arguments = [simulation.entry.name, simulation.parameters, history]
+            arguments: list[Any] = [simulation.entry.name, simulation.parameters, history]
             if in_words:
                 arguments.append(words.language)
             if names_path:
                 arguments.append(simulation.editor.design.name)
+            if with_log:
+                arguments.append(lab.shown_log)
             self._submit(name, words, make, *arguments)
 
         self._want(start)

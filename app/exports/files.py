@@ -11,12 +11,15 @@ from onpath.app.common.templates import render
 from onpath.app.exports.replay import replay
 from onpath.app.lab.lesson_state import LessonState
 from onpath.app.lab.segments import HistoryCopy, Segment
+from onpath.app.lab.shown_log import ShownLog
 from onpath.lessons.course import Course
 from onpath.lessons.progress import Progress
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.trajectory import write_csv
 from onpath.models.robot_files.guesses import Guess
+from onpath.models.studies.log_motion import log_trajectory
 from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.law_parameters import LEVEL_SET
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
 
@@ -34,18 +37,28 @@ def csv_file(robot: str, parameters: Parameters, history: HistoryCopy) -> bytes:
 
 
 def picture_file(
-    robot: str, parameters: Parameters, history: HistoryCopy, language: str, path: str = "circle"
+    robot: str,
+    parameters: Parameters,
+    history: HistoryCopy,
+    language: str,
+    path: str = "circle",
+    log: ShownLog | None = None,
 ) -> bytes:
     """The plots of the history as PNG.
 
     Args:
         robot: name in the catalogue.
         path: name of the present path.
+        log: of a real arm, drawn over them.
     """
     from onpath.app.exports.history_figure import draw_history  # only this file needs Matplotlib
 
-    runs = replay(ROBOTS[robot].make(parameters), history.segments())
-    return draw_history(runs, Words(language), parameters, robot, path)
+    machine, segments, logged = ROBOTS[robot].make(parameters), history.segments(), None
+    if log is not None:
+        is_level_set = parameters.across == LEVEL_SET
+        curve = segments[-1].curve
+        logged = log_trajectory(log.motion, machine.frame, curve, level_set=is_level_set)
+    return draw_history(replay(machine, segments), Words(language), parameters, robot, path, logged)
 
 
 def film_file(

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from onpath.app.common.palette import OF_SIDE
+from onpath.app.common.palette import INK, OF_SIDE
 from onpath.app.exports.figures import STYLES, Quantity, draw_column, panels_of, without_math
 from onpath.lessons.labels import (
     parameter_label,
@@ -54,21 +54,28 @@ def draw_history(
     parameters: Parameters | None = None,
     robot: str = "five_bar",
     path: str = "circle",
+    logged: Trajectory | None = None,
 ) -> bytes:
     """The lab's plots over the last minute as PNG.
 
     Args:
         parameters: the present ones, which are stated; None: none are.
         robot, path: names of the robot and of the present path.
+        logged: by a real arm, or None.
     """
-    figure = history_figure(runs, words, parameters, robot, path)
+    figure = history_figure(runs, words, parameters, robot, path, logged)
     file = io.BytesIO()
     figure.savefig(file, format="png", dpi=110)
     return file.getvalue()
 
 
 def history_figure(
-    runs: Runs, words: Words, parameters: Parameters | None, robot: str, path: str
+    runs: Runs,
+    words: Words,
+    parameters: Parameters | None,
+    robot: str,
+    path: str,
+    logged: Trajectory | None = None,
 ) -> Figure:
     """The figure of `draw_history`."""
     every = [run for parts in runs.values() for run in parts]
@@ -79,6 +86,8 @@ def history_figure(
     axes = figure.subplots(len(panels), 1, sharex=True)
     for axis, (name, label, column) in zip(axes, panels, strict=True):
         count = _draw(axis, runs, column)
+        if logged is not None:
+            _draw_log(axis, logged, every, *column(logged))
         axis.set_ylabel(label)
         axis.grid(alpha=0.25)
         if name in MEANS:
@@ -98,7 +107,10 @@ def history_figure(
     if parameters is not None:
         stated = fill(parameter_line(parameters, entry.parameters(), words), WIDTH)
         axes[0].set_title(stated, loc="left", fontsize=SMALL, color=GREY)
-    axes[0].legend(handles=_legend(runs, words), loc="upper right", fontsize=SMALL)
+    legend = _legend(runs, words)
+    if logged is not None:
+        legend.append(Line2D([], [], color=INK.hex, linewidth=1, label=words("chart.log")))
+    axes[0].legend(handles=legend, loc="upper right", fontsize=SMALL)
     axes[-1].set_xlabel("t  [s]")
     return figure
 
@@ -139,6 +151,16 @@ def _draw(axis: Axes, runs: Runs, column: Quantity) -> int:
         for run in parts[1:]:
             axis.axvline(run.t[0], color=OF_SIDE[side].hex, linestyle="-.", linewidth=1)
     return count
+
+
+def _draw_log(
+    axis: Axes, logged: Trajectory, runs: Sequence[Trajectory], values: np.ndarray
+) -> None:
+    """Draw what was logged while the runs last."""
+    begin, end = min(run.t[0] for run in runs), max(run.t[-1] for run in runs)
+    shown = (logged.t >= begin) & (logged.t <= end)
+    for column, style in zip(values[shown].T, STYLES, strict=False):
+        axis.plot(logged.t[shown], column, style, color=INK.hex, linewidth=1)
 
 
 def held_times(run: Trajectory) -> list[tuple[float, float]]:

@@ -1,29 +1,16 @@
-"""A path in a file that a browser has sent, read in a process of its own.
-
-The file may be hostile. It is read with limits of size and time, and in that process, so that a
-library that crashes or never returns cannot stop the lab; see `ExportProcess`.
-"""
+"""A path in a file that a browser has sent; see upload_reader.py."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from importlib import import_module
 
 import numpy as np
 
 from onpath.app.channel.file_inbox import MOST_BYTES
 from onpath.app.channel.file_messages import MOST_PARTS
-from onpath.app.common.error_log import log_error
-from onpath.app.exports.export_process import (
-    ExportError,
-    ExportLate,
-    ExportProcess,
-    ExportStopped,
-)
 from onpath.app.lab.commands.path import FollowCurve
 from onpath.lessons.words import Words
 from onpath.models.arrays import Array
@@ -47,11 +34,6 @@ SAMPLES = 256
 LARGEST = 0.4  # [m], size that a page can wish
 ARCS = (0.008, 0.012, 0.02, 0.03)  # [m], radii of corners that are tried where one is needed
 HELPING = 3.0  # [s] of processor time that the search for what helps may take
-STARTING = 60.0  # [s] that the process may take to start
-SECONDS = 15.0  # [s] that one file may take
-process = ExportProcess()
-_queue = ThreadPoolExecutor(1, "path files")
-"""Passes the files of all tabs to the process, one at a time."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -182,52 +164,3 @@ def _told(code: str, size: str, radius: str) -> Message:
         Message("design.both", {"size": size, "radius": radius}),
     )
     return next(way for way in ways if way.code == code)
-
-
-def import_libraries() -> None:
-    """Import what is slow to import, so that a file's time limit does not include it."""
-    for name in ("scipy.interpolate", "scipy.spatial", "svgpathtools", "tinycss2"):
-        with suppress(ImportError):  # the last two are an extra
-            import_module(name)
-
-
-class PathReader:
-    """Reads the files of one tab, one at a time."""
-
-    def __init__(self) -> None:
-        self._busy = False
-
-    def read(
-        self,
-        upload: Upload,
-        language: str,
-        take: Callable[[Read], None],
-        refuse: Callable[[Exception | Message], None],
-    ) -> None:
-        """Read a file in the background, and call one of the functions in another thread.
-
-        Args:
-            language: of the remarks.
-            take: takes what has been read.
-            refuse: takes the reason if nothing has.
-        """
-        if self._busy:
-            refuse(Message("error.file_busy"))
-            return
-        self._busy = True
-
-        def work() -> None:
-            try:
-                process.call(STARTING, import_libraries)
-                take(process.call(SECONDS, read_upload, upload, language))
-            except ExportStopped:
-                return  # the server is stopping
-            except ExportError as error:
-                log_error(error)
-                late = isinstance(error, ExportLate)
-                refuse(CodedError("error.file_takes_long" if late else "error.file_failed"))
-            finally:
-                self._busy = False
-
-        with suppress(RuntimeError):  # the interpreter is shutting down
-            _queue.submit(work)

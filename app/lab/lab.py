@@ -25,6 +25,7 @@ from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.script_player import ScriptPlayer
 from onpath.app.lab.setups.restore import restore
 from onpath.app.lab.setups.setup import Setup
+from onpath.app.lab.shown_log import ShownLog
 from onpath.app.lab.simulation import Simulation
 from onpath.lessons.course import NO_LESSONS, Course
 from onpath.lessons.sides import side_titles
@@ -107,6 +108,7 @@ class Lab:
         refused: why a setting, or the law that was typed for a side, was refused last, by name
             of the setting or side.
         shared: the last share code made.
+        log: of a real arm, drawn over the plots outside of lessons, or None.
         frozen: whether the teacher has stopped this lab.
         asked: number of commands given by the user.
         unsaved: why the latest changes are not saved, a key of the catalogues; empty if they are.
@@ -131,6 +133,7 @@ class Lab:
         self._forecast: tuple[tuple[object, ...], Message | None] | None = None
         self.refused: dict[str, str] = {}
         self.shared = ""
+        self.log: ShownLog | None = None
         self.frozen, self.asked = False, 0
         self.unsaved = ""
         self.breakdown = Breakdown()
@@ -141,6 +144,13 @@ class Lab:
     def words(self) -> Words:
         """Texts in the user's language."""
         return self.lessons.words
+
+    @property
+    def shown_log(self) -> ShownLog | None:
+        """The log, unless it is of another robot, or a lesson is open."""
+        log = self.log
+        shows = self.lessons.lesson is None and log is not None and log.fits(self.simulation.robot)
+        return log if shows else None
 
     @property
     def locked(self) -> Message | None:

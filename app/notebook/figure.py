@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from onpath.app.common.announced import announced
 from onpath.app.common.newcomer import NEWCOMER
 from onpath.app.common.own_laws import compiled_law
+from onpath.app.common.user_files import user_file
 from onpath.app.exports.standalone.figure import ENDINGS, Figure, check_language
 from onpath.app.exports.standalone.figure_choice import chosen
+from onpath.app.lab.shown_log import read_shown_log
 from onpath.app.notebook.arguments import curve_of, looked_up, path_name
 from onpath.app.notebook.simulate import check_names, entry_named
 from onpath.models.closed_loop.simulation import raised
@@ -39,6 +42,9 @@ def figure(
     choices: Any = (),
     title: str = "",
     language: str = "en",
+    log: str | Path | None = None,
+    columns: Mapping[str, str | int] | None = None,
+    units: Mapping[str, str | float] | None = None,
     **settings: Any,
 ) -> Figure:
     """One or two robots that can be held back, pulled, paused and reset.
@@ -61,11 +67,15 @@ def figure(
         choices: further laws, which readers may choose for each robot.
         title: title above the figure.
         language: language of the page.
+        log: what a real arm of this kind has logged, drawn over the plots from the beginning of
+            each run on; of a long log, 1200 rows.
+        columns, units: of the log, as for `onpath.identify`.
         settings: as in `onpath.simulate`. If neither `speed` nor `ramp` is among them, the robots
             move as slowly as in a new lab, with **onpath.NEWCOMER.
 
     Raises:
-        ValueError: an unknown name or an invalid value.
+        ValueError: an unknown name or an invalid value, or a log that is refused.
+        OSError: the log cannot be read.
         TypeError: an argument of earlier versions, which wrote the file at once.
 
     Warns:
@@ -98,6 +108,9 @@ def figure(
             controls=None if controls is None else _several(controls),
             choices=others,
         )
+    if log is not None:
+        read = read_shown_log(user_file(log), entry, columns or {}, units or {})
+        choice = replace(choice, logged=read)
     curve = next(iter(curves.values()))
     first = on_path(choice.entry, choice.parameters, curve)
     laws = choice.every_law

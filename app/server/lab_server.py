@@ -20,7 +20,7 @@ from onpath.app.common.end_signals import END_SIGNALS
 from onpath.app.common.error_log import log_error
 from onpath.app.common.periodic import Periodic
 from onpath.app.exports import exporter as exports
-from onpath.app.exports import path_upload
+from onpath.app.exports import upload_reader
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.scene.build_queue import BuildQueue, one_at_a_time
 from onpath.app.scene.client_scene import ClientScene
@@ -124,6 +124,7 @@ class LabServer:
                 path=options.path,
                 law=options.law,
                 settings=options.settings,
+                log=options.log,
             ),
         )
         self._memory = Periodic("memory", FREEING, self.registry.free_memory)
@@ -186,7 +187,7 @@ class LabServer:
         for visit in self.visits:
             visit.show_nothing()
         exports.process.stop()
-        path_upload.process.stop()
+        upload_reader.process.stop()
         self.server.stop()
         if self._expiry is not None:
             self._expiry.stop()

@@ -9,6 +9,7 @@ from onpath.app.common.newcomer import NEWCOMER
 from onpath.app.lab.commands.settings import SetByProcess
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.loops.loop_cache import LoopCache
+from onpath.app.lab.shown_log import ShownLog
 from onpath.app.lab.simulation import RobotSettings
 from onpath.lessons.course import Course
 from onpath.models.control.settable import with_values
@@ -24,6 +25,7 @@ def new_lab(
     path: PathDesign | None = None,
     law: str = "",
     settings: Mapping[str, str] = MappingProxyType({}),
+    log: ShownLog | None = None,
 ) -> Lab:
     """A lab whose robots all start slowly; lessons and files keep the usual speed.
 
@@ -32,8 +34,10 @@ def new_lab(
         path: the path at first, which this robot must be able to follow; None: the robot's circle.
         law: the law of the robot on the right at first; "": path following.
         settings: values of settings at first, by name.
+        log: drawn over the plots at first; None: none.
     """
     lab = Lab(loop_cache, robot, course)
+    lab.log = log
     simulation = lab.simulation
     for name, entry in tuple(ROBOTS.items()):
         simulation.earlier[name] = RobotSettings(with_values(entry.parameters(), NEWCOMER))

@@ -47,6 +47,7 @@ from onpath.app.server.page_class import PageClass, is_of_class
 from onpath.app.server.page_context import PageContext
 from onpath.app.server.page_files import PageFiles
 from onpath.app.server.page_form import PageForm
+from onpath.app.server.page_log import PageLog
 from onpath.app.server.page_requests import PageRequests
 from onpath.app.server.tab_visibility import TabVisibility
 from onpath.app.view.page_words import words_message
@@ -91,6 +92,7 @@ class PageData:
         teaching = context.teaching
         submit, teaches = self._thread.submit, teaching is not None
         self._first_view = FirstView(submit)
+        self._log = PageLog(submit)
         self._form = PageForm(own.post, submit, context.switches, teaches=teaches)
         self._taught: PageClass | None = None
         if teaching is not None:
@@ -141,6 +143,7 @@ class PageData:
             self._opened = stream.opened
             self._files.restart()
             self._form.restart()
+            self._log.restart()
             if self._taught is not None:
                 self._taught.restart()
             self._source.forget()
@@ -206,6 +209,8 @@ class PageData:
         if (seat := self._class_now(snapshot.nickname)) != self._class:
             self._class = seat
             messages.append(partial(encoded, seat))
+        if (log := self._log.news(snapshot.log)) is not None:
+            messages.append(partial(bytes, log))
         messages += self._of_lesson()
         messages += self._of_forms(snapshot, scene)
         while self._answers:

@@ -18,6 +18,7 @@ from onpath.app.channel.file_messages import (
     DownloadPart,
     DropFile,
     FileMessage,
+    LogFile,
     MakeFile,
     PathFile,
     PathHelp,
@@ -25,9 +26,13 @@ from onpath.app.channel.file_messages import (
     SendPart,
 )
 from onpath.app.exports.exporter import Delivery, Exporter
-from onpath.app.exports.path_upload import PathReader, Read, Upload
+from onpath.app.exports.log_upload import LogUpload, ReadLog
+from onpath.app.exports.path_upload import Read, Upload
+from onpath.app.exports.upload_reader import UploadReader
+from onpath.app.lab.commands.logs import ShowLog
 from onpath.app.lab.commands.path import FollowCurve
 from onpath.app.lab.lab import Command, Lab
+from onpath.app.lab.shown_log import ShownLog
 from onpath.lessons.words import Words
 from onpath.models.errors import CodedError, Message
 from onpath.models.path_files.placing import RADIUS, ROUND, SMOOTH, Placing
@@ -123,7 +128,7 @@ class PageFiles:
         self._post, self._code = post, code
         self.delivery = ChannelDelivery()
         self.exporter = Exporter(self.delivery)
-        self._inbox, self._reader = FileInbox(MOST_BYTES), PathReader()
+        self._inbox, self._reader = FileInbox(MOST_BYTES), UploadReader()
         self._wanted = deque[MakeFile]()
         self._arrived = deque[tuple[SendFile, bytes]]()
         self._news = deque[FileMessage]()
@@ -188,7 +193,34 @@ class PageFiles:
             self._read(*self._arrived.popleft(), lab)
 
     def _read(self, file: SendFile, content: bytes, lab: Lab) -> None:
-        simulation, use = lab.simulation, file.use
+        if isinstance(file.use, LogFile):
+            self._read_log(file, file.use, content, lab)
+        else:
+            self._read_path(file, file.use, content, lab)
+
+    def _read_log(self, file: SendFile, use: LogFile, content: bytes, lab: Lab) -> None:
+        upload = LogUpload(
+            name=file.name,
+            content=content,
+            robot=lab.simulation.entry.name,
+            parameters=lab.simulation.parameters,
+            columns=use.columns,
+            units=use.units,
+        )
+        words = Words(self._language)
+
+        def take(read: ReadLog) -> None:
+            if isinstance(read.found, ShownLog):
+                self._post(ShowLog(read.found))
+            self._news.append(_log_message(file, read, words))
+
+        self._reader.read_log(upload, take, lambda why: self._refuse(file, why))
+
+    def _refuse(self, file: SendFile, reason: Exception | Message) -> None:
+        self._news.append(self._refusal(file.number, reason))
+
+    def _read_path(self, file: SendFile, use: PathFile, content: bytes, lab: Lab) -> None:
+        simulation = lab.simulation
         upload = Upload(
             name=file.name,
             content=content,
@@ -196,7 +228,6 @@ class PageFiles:
             robot=simulation.entry.name,
             parameters=simulation.parameters,
         )
-
         words = Words(self._language)
 
         def take(read: Read) -> None:
@@ -206,10 +237,7 @@ class PageFiles:
                 self.follows |= not (file.again or read.why)
             self._news.append(_message(file, read, words))
 
-        def refuse(reason: Exception | Message) -> None:
-            self._news.append(self._refusal(file.number, reason))
-
-        self._reader.read(upload, self._language, take, refuse)
+        self._reader.read(upload, self._language, take, lambda why: self._refuse(file, why))
 
     def take(self) -> list[Struct]:
         """The messages that the page is told next. In the simulation thread."""
@@ -252,6 +280,20 @@ def _message(file: SendFile, read: Read, words: Words) -> FileMessage:
             tuple(np.rint(1000 * line).astype(int).ravel().tolist()) for line in read.lines
         ),
         helps=tuple(_help(placing, words.sentence(text)) for text, placing in read.helps),
+    )
+
+
+def _log_message(file: SendFile, read: ReadLog, words: Words) -> FileMessage:
+    """What a page is told of a log that was read."""
+    found = read.found
+    why = "" if isinstance(found, ShownLog) else words.sentence(found)
+    return FileMessage(
+        number=file.number,
+        state="refused" if why else "used",
+        received=file.size,
+        why=why,
+        columns=read.columns,
+        quantities=read.quantities,
     )
 
 

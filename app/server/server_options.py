@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from onpath.app.classroom.classroom import Classroom
+from onpath.app.lab.shown_log import ShownLog
 from onpath.app.storage.expiry import Retention
 from onpath.app.storage.records import Records
 from onpath.app.viser_adapter.limits import Limits
@@ -31,7 +32,7 @@ class ServerOptions:
         hang_seconds: see `Watchdog`; 0 for no watchdog.
         privacy_url: the address of the site's privacy notice, if it has one.
         robot: with which a new lab begins.
-        path, law, settings: those of new labs; see `new_lab`.
+        path, law, settings, log: those of new labs; see `new_lab`.
         limits, allowed_origins, trusted_proxies, unix_socket, course_url: see `make_server`.
     """
 
@@ -46,6 +47,7 @@ class ServerOptions:
     path: PathDesign | None = None
     law: str = ""
     settings: Mapping[str, str] = field(default_factory=dict[str, str])
+    log: ShownLog | None = None
     limits: Limits = Limits()
     allowed_origins: tuple[str, ...] = ()
     trusted_proxies: tuple[str, ...] = ()

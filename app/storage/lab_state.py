@@ -18,12 +18,14 @@ from onpath.app.lab.setups.stored import (
     without_absent_laws,
     without_absent_robots,
 )
+from onpath.app.lab.shown_log import ShownLog, log_data, log_from
 from onpath.lessons.progress import Progress, read_progress
 from onpath.models.closed_loop.lab_settings import settings_kept
 
 SAVE_INTERVAL = 60  # frames between checks for changes
 LabState = dict[str, Any]
-NEW = (Setup(), Progress(), None, dict[str, Any]())
+NEW = (Setup(), Progress(), None, dict[str, Any](), None)
+Now = tuple[Setup, Progress, Setup | None, dict[str, Any], ShownLog | None]
 
 
 class Keeper(Protocol):
@@ -113,6 +115,7 @@ def put_back(lab: Lab, state: LabState) -> None:
     lab.set_up(setup)
     lab.simulation.set(**{name: getattr(own, name) for name in settings_kept("lab")})
     lab.lessons.resume(progress, earlier, lab)
+    lab.log = log_from(state.get("log"))
     messages = list[str]()
     if refused:
         reasons = "; ".join(map(lab.words.sentence, refused))
@@ -125,15 +128,22 @@ def put_back(lab: Lab, state: LabState) -> None:
         lab.show_message(" ".join(messages), "warning")
 
 
-def _now(lab: Lab) -> tuple[Setup, Progress, Setup | None, dict[str, Any]]:
+def _now(lab: Lab) -> Now:
     own = own_differences(lab.simulation.settings, "lab")
-    return capture(lab.simulation), lab.lessons.progress, lab.lessons.before, own
+    return capture(lab.simulation), lab.lessons.progress, lab.lessons.before, own, lab.log
 
 
-def _state(setup: Setup, progress: Progress, before: Setup | None, own: dict[str, Any]) -> LabState:
-    return {
+def _state(
+    setup: Setup,
+    progress: Progress,
+    before: Setup | None,
+    own: dict[str, Any],
+    log: ShownLog | None,
+) -> LabState:
+    state = {
         "setup": to_data(setup),
         "lessons": msgspec.to_builtins(progress),
         "before": None if before is None else to_data(before),
         "settings": own,
     }
+    return state if log is None else {**state, "log": log_data(log)}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 
-from onpath.app.channel.file_inbox import MOST_BYTES
+from onpath.app.channel.file_inbox import MOST_BYTES, MOST_LOG_BYTES
 from onpath.app.channel.messages import WordsMessage, encoded
 from onpath.app.steps.player_words import player_words
 from onpath.app.view.first_minute import INVITATIONS
@@ -15,6 +15,7 @@ from onpath.lessons.words import Words
 CHART = (
     *("chart.title", "chart.held", "chart.pulled", "chart.centre", "chart.table", "chart.time"),
     *("chart.acts", "chart.look", "chart.look_hint", "chart.yours", "chart.draw"),
+    *("chart.log", "chart.remove_log"),
     *("plots.menu", "plots.menu_hint", "plot.phase", "plot.phase_name"),
 )
 """Messages of the plots, which figures and lessons have."""
@@ -56,6 +57,7 @@ def words_message(language: str) -> bytes:
     words = Words(language)
     messages = player_words(words) | {key: words(key) for key in _PLAIN}
     messages |= words.unfilled(_FILLED)
+    messages["log.hint"] = words("log.hint", most=f"{MOST_LOG_BYTES / 1e6:g}")
     messages["design.upload_hint"] = words("design.upload_hint", most=f"{MOST_BYTES / 1e6:g}")
     texts = messages | form_words(words)
     return encoded(WordsMessage(language, texts))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import casadi as ca
@@ -13,26 +14,117 @@ from onpath.models.closed_loop.trajectory import Trajectory
 from onpath.models.errors import CodedError
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.distance import closest_parameters, drawn_distance
+from onpath.models.paths.frames import Frame
 from onpath.models.studies.experiments import Experiment
 from onpath.models.studies.linear_model import MotionRecord
 from onpath.models.studies.record_file import log_columns, read_records
 from onpath.models.systems.law_parameters import LEVEL_SET
+from onpath.models.systems.robots import Robot
 from onpath.models.systems.rows import Rows
 
 LOG = "log"
 """In the place of a control law's name."""
 
 
-def log_motion(record: MotionRecord, experiment: Experiment) -> Trajectory:
-    """The end-point of a log, and where it is on the path of an experiment.
+@dataclass(frozen=True, slots=True, eq=False)
+class LoggedMotion:
+    """The motion of an end-point as an arm has logged it, at even times from 0 on.
 
-    y = h(q) and y' = J v are those of the experiment's robot. θ is that of the closest point of the
-    path. With g = z - σ(θ), in the plane of the path,
+    Attributes:
+        dt: time step, [s].
+        y, y_rate: end-point and its velocity, shape (rows, p), [m] and [m/s].
+        u: torque of the motors, constant over each step, (rows, m), [N m].
+        force: on the end-point, likewise, (rows, p), [N].
+    """
+
+    dt: float
+    y: Array
+    y_rate: Array
+    u: Array
+    force: Array
+
+
+def logged_motion(record: MotionRecord, robot: Robot, plant: Array) -> LoggedMotion:
+    """The motion of the end-point: y = h(q) and y' = J v.
+
+    Args:
+        record: of the same robot.
+        plant: the robot's parameters.
+    """
+    system = robot.system
+    y_rate = ca.jtimes(system.output, system.q, system.v)
+    inputs = [system.q, system.v, system.parameters]
+    moving = Rows(inputs, ca.vertcat(system.output, y_rate))
+    place, rate = np.split(moving(record.q, record.v, plant), 2, axis=1)
+    return LoggedMotion(dt=record.dt, y=place, y_rate=rate, u=record.u, force=record.force)
+
+
+def thinned(motion: LoggedMotion, most: int, least_step: float) -> LoggedMotion:
+    """The same motion in at most `most` rows, `least_step` seconds apart or more.
+
+    Torques and forces are the means over the longer steps.
+    """
+    rows = len(motion.y)
+    step = max(motion.dt, least_step, rows * motion.dt / most)
+    count = int(rows * motion.dt / step + 1e-9)
+    if step == motion.dt or count < 2:
+        return motion
+    ends = motion.dt * np.arange(rows + 1)
+    starts = step * np.arange(count)
+
+    def at(values: Array) -> Array:
+        return np.stack([np.interp(starts, ends[:-1], each) for each in values.T], axis=1)
+
+    def means(values: Array) -> Array:
+        sums = np.concatenate([np.zeros((1, values.shape[1])), np.cumsum(values, axis=0)])
+        edges = np.append(starts, count * step)
+        whole = [np.interp(edges, ends, motion.dt * each) for each in sums.T]
+        return np.diff(np.stack(whole, axis=1), axis=0) / step
+
+    return LoggedMotion(
+        dt=step,
+        y=at(motion.y),
+        y_rate=at(motion.y_rate),
+        u=means(motion.u),
+        force=means(motion.force),
+    )
+
+
+def along_path(
+    motion: LoggedMotion, frame: Frame, curve: Curve, *, level_set: bool = False
+) -> dict[str, Array]:
+    """Where a logged motion is on a path, by name as in a `Trajectory`.
+
+    θ is that of the closest point of the path. With g = z - σ(θ), in the plane of the path,
 
         θ' = σ' · z' / (|σ'|² - g · σ''),    ξ₁ = (σ₁' g₂ - σ₂' g₁) / |σ'|,
 
-    the distance with its sign. On a path that leaves its plane, these two are NaN, and ξ₁ is NaN,
-    too, where the law of the experiment takes a level set for it.
+    the distance with its sign. On a path that leaves its plane, these two are NaN.
+
+    Args:
+        level_set: whether ξ₁ is meant to be one; it is NaN then.
+
+    Returns:
+        distance, speed, theta, theta_rate and xi, shape (rows,) each.
+    """
+    theta = closest_parameters(frame, curve, motion.y)
+    z = frame.planar(motion.y)
+    moved = frame.planar(motion.y_rate) - frame.planar(np.zeros_like(motion.y_rate))
+    if curve.dimension == 3:
+        along, xi = np.full(len(theta), np.nan), np.full(len(theta), np.nan)
+    else:
+        along, xi = _on_path(curve, theta, z, moved)
+    return {
+        "distance": drawn_distance(frame, curve, motion.y, theta),
+        "speed": along * np.linalg.norm(curve.at(theta, 1), axis=1),
+        "theta": theta,
+        "theta_rate": along,
+        "xi": np.full(len(theta), np.nan) if level_set else xi,
+    }
+
+
+def log_motion(record: MotionRecord, experiment: Experiment) -> Trajectory:
+    """The end-point of a log, and where it is on the path of an experiment; see `along_path`.
 
     Args:
         record: of the same robot. Its time begins at 0.
@@ -40,33 +132,30 @@ def log_motion(record: MotionRecord, experiment: Experiment) -> Trajectory:
     Returns:
         With the fields q, v, y, u, force, theta, theta_rate and xi, (n, 1).
     """
-    robot, curve = experiment.robot(), experiment.curve()
-    system, frame = robot.system, robot.frame
-    y_rate = ca.jtimes(system.output, system.q, system.v)
-    inputs = [system.q, system.v, system.parameters]
-    moving = Rows(inputs, ca.vertcat(system.output, y_rate))
-    place, rate = np.split(
-        moving(record.q, record.v, robot.plant(experiment.parameters)), 2, axis=1
-    )
-    theta = closest_parameters(frame, curve, place)
-    z = frame.planar(place)
-    moved = frame.planar(rate) - frame.planar(np.zeros_like(rate))
-    if curve.dimension == 3:
-        along, xi = np.full(len(theta), np.nan), np.full(len(theta), np.nan)
-    else:
-        along, xi = _on_path(curve, theta, z, moved)
-    if experiment.parameters.across == LEVEL_SET:
-        xi = np.full(len(theta), np.nan)
-    speed = along * np.linalg.norm(curve.at(theta, 1), axis=1)
-    motion = {"q": record.q, "v": record.v, "y": place, "u": record.u, "force": record.force}
-    on_path = {"theta": theta, "theta_rate": along, "xi": xi}
+    robot, level_set = experiment.robot(), experiment.parameters.across == LEVEL_SET
+    motion = logged_motion(record, robot, robot.plant(experiment.parameters))
+    run = log_trajectory(motion, robot.frame, experiment.curve(), level_set=level_set)
+    return replace(run, fields={"q": record.q, "v": record.v, **run.fields})
+
+
+def log_trajectory(
+    motion: LoggedMotion, frame: Frame, curve: Curve, *, level_set: bool = False
+) -> Trajectory:
+    """A logged motion along a path; see `along_path`.
+
+    Returns:
+        With the fields y, u, force, theta, theta_rate and xi, (n, 1).
+    """
+    on_path = along_path(motion, frame, curve, level_set=level_set)
+    distance, speed = on_path.pop("distance"), on_path.pop("speed")
+    moved = {"y": motion.y, "u": motion.u, "force": motion.force}
     return Trajectory(
         law=LOG,
-        t=np.arange(len(theta), dtype=float) * record.dt,
-        fields=motion | {name: values[:, None] for name, values in on_path.items()},
-        distance=drawn_distance(frame, curve, place, theta),
+        t=np.arange(len(distance), dtype=float) * motion.dt,
+        fields=moved | {name: values[:, None] for name, values in on_path.items()},
+        distance=distance,
         speed=speed,
-        held=np.zeros(len(theta), dtype=np.bool_),
+        held=np.zeros(len(distance), dtype=np.bool_),
         label=LOG,
     )
 
@@ -86,13 +175,32 @@ def read_motions(
         CodedError: the file is refused; the message names it, and line and column.
         OSError: the file cannot be read.
     """
-    robot = experiment.robot()
+    records = _records(file, experiment.robot(), columns, units)
+    return [log_motion(record, experiment) for record in records]
+
+
+def read_logged(
+    file: Path,
+    robot: Robot,
+    plant: Array,
+    columns: Mapping[str, str | int],
+    units: Mapping[str, str | float],
+) -> LoggedMotion:
+    """`logged_motion` of the first part of a file; the arguments are those of `read_motions`."""
+    return logged_motion(_records(file, robot, columns, units)[0], robot, plant)
+
+
+def _records(
+    file: Path,
+    robot: Robot,
+    columns: Mapping[str, str | int],
+    units: Mapping[str, str | float],
+) -> list[MotionRecord]:
     log = log_columns(robot, columns, units) if columns or units else None
     try:
-        records = read_records(file, robot, log)
+        return [record for _, record in read_records(file, robot, log)]
     except CodedError as error:
         raise CodedError("error.in_file", file=str(file), reason=error.message) from None
-    return [log_motion(record, experiment) for _, record in records]
 
 
 def _on_path(curve: Curve, theta: Array, z: Array, z_rate: Array) -> tuple[Array, Array]:

@@ -38,6 +38,7 @@ UNITS: Mapping[str, Mapping[str, float]] = {
     "m": LENGTHS,
     "Nm": {"Nm": 1.0, "mNm": 1e-3, "Ncm": 1e-2},
     "N": {"N": 1.0, "mN": 1e-3, "kN": 1e3},
+    "m1.5": {"m1.5": 1.0},  # of the modes of a flexible link
 }
 """SI unit of a quantity -> the units in which a log may have it, in SI units."""
 
@@ -90,8 +91,13 @@ def log_columns(
     return LogColumns({**known, **named}, frozenset(columns), scales)
 
 
+def units_of(column: str) -> Mapping[str, float]:
+    """The units in which a log may have a column of OnPath, such as "q1_rad", and their sizes."""
+    return UNITS[column.rpartition("_")[2]]
+
+
 def _scale(name: str, unit: str | float, usual: str) -> float:
-    possible = UNITS[usual.rpartition("_")[2]]
+    possible = units_of(usual)
     if unit in possible:
         return possible[str(unit)]
     try:

@@ -25,6 +25,7 @@ import io
 import re
 from array import array
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from itertools import chain
 from math import isfinite
@@ -83,11 +84,29 @@ def read_table(
     """
     if is_array_file(path):
         return _of_arrays(array_columns(path), numbers, time)
+    with _opened(path) as file:
+        return _read(lines_of(file), numbers, texts, time)
+
+
+def column_names(path: Path) -> tuple[str, ...]:
+    """The names of a table's columns; their places, from 1 on, where they have none.
+
+    Raises:
+        CodedError, OSError: see `read_table`.
+    """
+    if is_array_file(path):
+        return tuple(array_columns(path))
+    with _opened(path) as file:
+        return tuple(_begun(lines_of(file)).names)
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[io.TextIOWrapper]:
+    """The text of a file; undecodable bytes are replaced, and refused if they matter."""
     with path.open("rb") as raw:
         encoding = encoding_of(raw.peek(1))
-        # undecodable bytes are replaced, and refused if they matter
         with io.TextIOWrapper(raw, encoding, errors="replace", newline=None) as file:
-            return _read(lines_of(file), numbers, texts, time)
+            yield file
 
 
 def encoding_of(head: bytes) -> str:
@@ -116,9 +135,24 @@ def lines_of(file: io.TextIOWrapper, *, empty: bool = False) -> Iterator[tuple[i
             yield number, ""
 
 
-def _read(
-    lines: Iterator[tuple[int, str]], numbers: Sequence[str], texts: Sequence[str], time: str
-) -> Table:
+@dataclass(frozen=True, slots=True)
+class _Begun:
+    """A table of which the names have been read.
+
+    Attributes:
+        names: of its columns.
+        separator: of its cells.
+        number: of the line with the names, or of the first row.
+        lines: the rows.
+    """
+
+    names: list[str]
+    separator: str
+    number: int
+    lines: Iterator[tuple[int, str]]
+
+
+def _begun(lines: Iterator[tuple[int, str]]) -> _Begun:
     number, line = next(lines, (1, ""))
     if declared := DECLARED.fullmatch(line):
         separator = declared["separator"]
@@ -134,12 +168,20 @@ def _read(
         names.pop()
     if _is_row(names):
         names, lines = [str(i) for i in range(1, len(names) + 1)], chain([(number, line)], lines)
+    return _Begun(names, separator, number, lines)
+
+
+def _read(
+    lines: Iterator[tuple[int, str]], numbers: Sequence[str], texts: Sequence[str], time: str
+) -> Table:
+    begun = _begun(lines)
+    names, separator, number = begun.names, begun.separator, begun.number
     wanted = [_place(name, names, number) for name in numbers]
     most = {i: LATEST if names[i] == time else LARGEST for i in wanted}
     others = {name: names.index(name) for name in texts if name in names}
     reader, flat, rows = NumberReader(), array("d"), list[int]()
     found = {name: list[str]() for name in others}
-    for number, line in lines:
+    for number, line in begun.lines:
         cells = cells_of(line, separator, number)
         if len(cells) < len(names) or any(cells[len(names) :]):
             expected, got = str(len(names)), str(len(cells))

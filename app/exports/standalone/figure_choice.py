@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from onpath.app.lab.shown_log import ShownLog
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.loop_kind import Kind
@@ -58,6 +59,7 @@ class FigureChoice:
             in any case.
         begins: where and how the runs start.
         drawings: what may be drawn besides the robots; see drawings.py.
+        logged: the log of a real arm that is drawn over the plots, or None.
         remade: parameters that make another robot -> their values on the page, each of which needs
             a figure of its own.
     """
@@ -74,6 +76,7 @@ class FigureChoice:
     bends: bool = False
     begins: Start = ON_PATH
     drawings: tuple[str, ...] = ()
+    logged: ShownLog | None = None
     remade: Mapping[str, tuple[Any, ...]] = dataclasses.field(
         default_factory=dict[str, tuple[Any, ...]]
     )

@@ -27,6 +27,7 @@ from onpath.app.lab.path_editor import BLEND, HALVINGS
 from onpath.app.lab.plot_rows import row_data
 from onpath.app.lab.plot_samples import sample_layout
 from onpath.app.view.captions import FULL, OFF, RETURNS
+from onpath.app.view.log_curves import fields_of_efforts, fields_on_path
 from onpath.app.view.notes import NEVER, alpha_note
 from onpath.lessons.labels import path_label
 from onpath.lessons.sides import law_text, law_titles
@@ -65,6 +66,7 @@ def figure_numbers(figure: FigureChoice) -> dict[str, Any]:
     return {
         "paths": [_path(figure, name, curve) for name, curve in figure.paths.items()],
         "critical": _critical(figure),
+        "logged": _logged(figure),
         "box": _box(figure),
         "poles": {
             "interval": 1 / figure.parameters.control_rate,
@@ -127,6 +129,7 @@ def common_data(figure: FigureChoice, words: Words, numbers: Mapping[str, Any]) 
             words,
             figure.entry.guesses,
         ),
+        "logged": numbers["logged"],
         "efforts": _efforts(robot),
         "poles": numbers["poles"]
         | {"gains": [kernel.settings.slices[f"K{i}"].start for i in range(1, 6)]},
@@ -210,6 +213,23 @@ def _critical(figure: FigureChoice) -> list[float]:
         for curve in figure.paths.values()
     ]
     return [min(link.critical_alpha(own, joints) for joints in poses) for poses in rest]
+
+
+def _logged(figure: FigureChoice) -> dict[str, Any] | None:
+    """The log of a real arm: what does not depend on a path, and what does, for each path."""
+    log, own = figure.logged, figure.parameters
+    if log is None:
+        return None
+    frame, is_level_set = figure.machine.frame, own.across == LEVEL_SET
+    return {
+        "name": log.file,
+        "step": log.motion.dt,
+        "fields": fields_of_efforts(log.motion),
+        "paths": [
+            fields_on_path(log.motion, frame, raised(curve, own), is_level_set=is_level_set)
+            for curve in figure.paths.values()
+        ],
+    }
 
 
 def _limits(figure: FigureChoice, critical: Sequence[float], words: Words) -> list[dict[str, Any]]:

@@ -33,6 +33,7 @@ from onpath.app.lab.commands.lessons import (
     SetLanguage,
     ShowHint,
 )
+from onpath.app.lab.commands.logs import RemoveLog
 from onpath.app.lab.commands.path import (
     AddPoint,
     ChoosePath,
@@ -108,6 +109,7 @@ __all__ = [
     "Pulse",
     "Redo",
     "Release",
+    "RemoveLog",
     "RemovePoint",
     "ReplayBreakdown",
     "ReportState",

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from onpath.app.lab.shown_log import ShownLog
 from onpath.app.lab.snapshots.snapshot import Snapshot
 from onpath.lessons.checks import Verdict
 from onpath.lessons.pace import Pace
@@ -15,6 +16,8 @@ from onpath.lessons.votes import Vote
 from onpath.models.closed_loop.lab_settings import LabSettings
 from onpath.models.control.place import Place
 from onpath.models.control.settable import parameters_from
+from onpath.models.paths.curves import Curve
+from onpath.models.paths.frames import Frame
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
@@ -42,6 +45,23 @@ class RunState:
     waits: bool
     can_undo_going_on: bool
     laws: dict[str, str]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LogSnapshot:
+    """The log of a real arm over the plots, and what its curves depend on.
+
+    Attributes:
+        log: of the lab's robot.
+        frame: of the robot's path.
+        curve: the path; while it changes, the one before.
+        is_level_set: whether ξ₁ is an area.
+    """
+
+    log: ShownLog
+    frame: Frame
+    curve: Curve
+    is_level_set: bool
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -123,6 +143,7 @@ class PageSnapshot(Snapshot):
         shared: the last share code made.
         sent: keys of answers that are stored; see `LessonState.sent`.
         nickname: the student's nickname in the class, or empty.
+        log: of a real arm, or None.
     """
 
     parameters: ParameterValues
@@ -137,6 +158,7 @@ class PageSnapshot(Snapshot):
     refused: dict[str, str]
     wall_forces: dict[str, float]
     places: LawPlaces
+    log: LogSnapshot | None
 
     @property
     def values(self) -> dict[str, Any]:

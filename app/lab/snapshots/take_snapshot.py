@@ -21,6 +21,7 @@ from onpath.app.lab.snapshots.obstacles import (
 )
 from onpath.app.lab.snapshots.page_snapshot import (
     LessonSnapshot,
+    LogSnapshot,
     PageSnapshot,
     ParameterValues,
     PathEdit,
@@ -39,6 +40,7 @@ from onpath.models.paths.curve_fit import FAR
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.path_design import PathDesign
 from onpath.models.paths.spline_curves import SplineCurve
+from onpath.models.systems.law_parameters import LEVEL_SET
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
 
@@ -110,6 +112,7 @@ def take_page_snapshot(
         settings=simulation.settings,
         refused=dict(lab.refused),
         places=law_places(simulation, scene["time"], before),
+        log=_log(lab, before),
     )
 
 
@@ -321,6 +324,20 @@ def _sampled(design: PathDesign) -> Array:
 def _values(parameters: Parameters) -> ParameterValues:
     """The values; the same object for the same parameters."""
     return values_of(parameters)
+
+
+def _log(lab: Lab, before: PageSnapshot | None) -> LogSnapshot | None:
+    """The log that is shown; the same if nothing has changed."""
+    log, simulation = lab.shown_log, lab.simulation
+    if log is None:
+        return None
+    last, blend = None if before is None else before.log, simulation.editor.blend
+    is_level_set = simulation.parameters.across == LEVEL_SET
+    if last is not None and last.log is log and last.is_level_set == is_level_set:
+        frame, moves = simulation.robot.frame, blend.before is not None
+        if last.frame is frame and (moves or last.curve is blend.target):
+            return last
+    return LogSnapshot(log, simulation.robot.frame, blend.target, is_level_set)
 
 
 def _lesson(lab: Lab) -> LessonSnapshot:

@@ -2,7 +2,7 @@
 
 import type { FormMessage } from "../core/form_data"
 import { keepDraftsOf } from "../core/drafts"
-import { sampleAt, type Act, type Change, type Engine, type PathShape, type RowData, type Sample, type SideSample, type SideText, type State, type Vector } from "../core/engine"
+import { logCurves, sampleAt, type Act, type Change, type Engine, type LogCurves, type PathShape, type RowData, type Sample, type SideSample, type SideText, type State, type Vector } from "../core/engine"
 import { AT_JOINTS } from "../core/symbols"
 import { Files } from "./files"
 import { keep, keepLab, kept, siteOf } from "./kept"
@@ -163,6 +163,7 @@ export class ServerEngine implements Engine {
     wall: WallMessage | null = null
     /** What a class's remote control is told besides its form; null until it is known, and on other pages. */
     remote: RemoteMessage | null = null
+    log: LogCurves | null = null
     /** The lab's place in a class; null until it is known. */
     seat: ClassMessage | null = null
     /** Whether the page has offered to join the class. */
@@ -403,6 +404,7 @@ export class ServerEngine implements Engine {
             this.tell("words")
         } else if (message.is === "lab") {
             keepLab(message.code)
+            this.log = null // if there is one, it is told next
             keepDraftsOf(message.code)
             this.outbox.reach(message.code)
             if (this.hasLab) this.askAgain() // another lab, or the same one as another page
@@ -414,6 +416,9 @@ export class ServerEngine implements Engine {
         } else if (message.is === "wall") {
             this.wall = message
             this.tell("class")
+        } else if (message.is === "log") {
+            this.log = message.file ? logCurves(message.file, message.step, message.fields) : null
+            this.tell("log")
         } else if (message.is === "remote") {
             this.remote = message
             this.tell("class")

@@ -12,11 +12,11 @@ export interface Download extends Pick<DownloadMessage, "number" | "name" | "tex
 }
 
 /** What became of a file that was sent; `state` is empty if it was given up. */
-export interface Answer extends Pick<FileMessage, "why" | "lines" | "helps"> {
+export interface Answer extends Pick<FileMessage, "why" | "lines" | "helps" | "columns" | "quantities"> {
     state: "used" | "refused" | ""
 }
 
-const GIVEN_UP: Answer = { state: "", why: "", lines: [], helps: [] }
+const GIVEN_UP: Answer = { state: "", why: "", lines: [], helps: [], columns: [], quantities: [] }
 
 interface Upload {
     begin: SendFile

@@ -158,6 +158,15 @@ export interface PathFile {
     parts?: number[]
 }
 
+/** The log of a real arm, which is drawn over the plots. */
+export interface LogFile {
+    kind: "log"
+    /** the file's names, or places, of the robot's quantities, by name; what is missing is guessed. */
+    columns?: Record<string, string>
+    /** of these columns, or their sizes in SI units; those that are missing are guessed. */
+    units?: Record<string, string>
+}
+
 /** A file will come in parts: the first after the answer to this, `FileMessage`, and each further one after the answer to
  * the one before. */
 export interface SendFile {
@@ -169,7 +178,7 @@ export interface SendFile {
     /** [B]. */
     size: number
     /** what is done with it. */
-    use: PathFile
+    use: PathFile | LogFile
     /** number of the same file when it was sent before, whose content need not come again; 0 if it was not. */
     again?: number
 }
@@ -328,6 +337,7 @@ export type Command =
     | { do: "Pulse" }
     | { do: "Redo" }
     | { do: "Release"; side?: string | null }
+    | { do: "RemoveLog" }
     | { do: "RemovePoint" }
     | { do: "ReplayBreakdown" }
     | { do: "Reset" }
@@ -449,6 +459,18 @@ export interface PathMessage {
     right: number[]
     /** two unit vectors at right angles, in which the path is seen from in front. */
     up: number[]
+}
+
+/** The log of a real arm that is drawn over the plots, when it or the path changes. */
+export interface LogMessage {
+    is: "log"
+    /** name of its file; empty: there is no log. */
+    file: string
+    /** from one row to the next, [s]; the first one is at 0. */
+    step: number
+    /** names of fields as in `FrameMessage`, with the number of units that an SI unit has, and each of its numbers in all rows;
+     * null where it is not known. */
+    fields: ([string, number, ((number | null)[])[]])[]
 }
 
 /** Where the symbol is found that is asked for, whenever the robots have moved, at most 20 times a second. */
@@ -601,6 +623,20 @@ export interface PathHelp {
     radius: number
 }
 
+/** A quantity of the robot in a log. */
+export interface LogQuantity {
+    /** such as "q1". */
+    name: string
+    /** of the file that is read as it; empty if there is none. */
+    column: string
+    /** in which it is read. */
+    unit: string
+    /** those that it may have. */
+    units: string[]
+    /** whether the file need not have it. */
+    is_optional: boolean
+}
+
 /** How far the server is with a file of the page. */
 export interface FileMessage {
     is: "file"
@@ -616,6 +652,10 @@ export interface FileMessage {
     lines: number[][]
     /** what would help. */
     helps: PathHelp[]
+    /** names of a log's columns. */
+    columns: string[]
+    /** what is read from them. */
+    quantities: LogQuantity[]
 }
 
 /** How far the server is with a file for the page. */
@@ -938,6 +978,7 @@ export type LabMessage =
     | WordsMessage
     | FrameMessage
     | PathMessage
+    | LogMessage
     | LitMessage
     | Changes<StateMessage>
     | LessonMessage

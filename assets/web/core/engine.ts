@@ -54,6 +54,24 @@ export interface RowData {
     lines: readonly { field: string; at: number; name: string }[]
 }
 
+/** What a real arm has logged: curves over time from the beginning of a run on; see LogMessage. */
+export interface LogCurves {
+    /** Of its file. */
+    name: string
+    times: readonly number[]
+    /** The numbers of each field at these times, in SI units; NaN where it is not known. */
+    fields: ReadonlyMap<string, readonly (readonly number[])[]>
+}
+
+/** Numbers as they are told, in units of which an SI unit has some. */
+export type ToldField = readonly [name: string, unit: number, columns: readonly (readonly (number | null)[])[]]
+
+export function logCurves(name: string, step: number, told: readonly ToldField[]): LogCurves {
+    const fields = new Map(told.map(([field, unit, columns]) => [field, columns.map(column => column.map(each => (each === null ? NaN : each / unit)))]))
+    const rows = [...fields.values()][0]?.[0]?.length ?? 0
+    return { name, times: Array.from({ length: rows }, (_, i) => i * step), fields }
+}
+
 /** The path, as lines through its points. */
 export interface PathShape {
     lines: readonly (readonly Vector[])[]
@@ -90,7 +108,7 @@ export type Act =
 
 /** What has changed: there are new samples; earlier ones are no longer valid; the step of a lesson, or what is
  * measured in it; or anything else. */
-export type Change = "samples" | "history" | "path" | "lesson" | "measured" | "state" | "words" | "form" | "values" | "class"
+export type Change = "samples" | "history" | "path" | "lesson" | "measured" | "state" | "words" | "form" | "values" | "class" | "log"
 
 export interface Engine {
     readonly state: State
@@ -105,6 +123,8 @@ export interface Engine {
     plot(fields: readonly string[]): void
     /** The numbers of a field of a robot in one of the samples, in SI units; null if they are not known. */
     field(sample: Sample, side: number, name: string): ArrayLike<number> | null
+    /** What a real arm has logged, to be drawn over the plots; null: nothing. */
+    readonly log: LogCurves | null
     act(act: Act): void
     /** What a symbol of joints means on a robot: points of a line, one for a joint, or none. */
     lit(symbol: string, side: number): readonly Vector[]

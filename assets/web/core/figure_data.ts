@@ -1,6 +1,6 @@
 // The data that Python puts into the page: see app/exports/standalone/figure_data.py.
 
-import type { RowData } from "./engine"
+import type { RowData, ToldField } from "./engine"
 import type { FormMessage } from "./form_data"
 
 /** Index of the first number in a flat vector, and how many there are. */
@@ -106,6 +106,8 @@ export interface FigureData extends Texts<"language" | "module"> {
         "q" | "v" | "y" | "theta" | "theta_ref" | "u" | "force" | "far" | "integral_used" | "theta_rate" | "speed" | "xi" | "xi_rate", Place
     >
     rows: RowData[]
+    /** What a real arm has logged: what does not depend on the path, and what does, for each path. */
+    logged?: { name: string; step: number; fields: ToldField[]; paths: ToldField[][] } | null
     sides: SideData[]
     laws: LawData[]
     drawings: DrawingsData

@@ -63,7 +63,9 @@ class Face {
     constructor(private readonly engine: ServerEngine, private readonly texts: Texts, reopen = "") {
         const { signal } = this.ended
         const indices = engine.texts.map((_, i) => i)
-        this.strip = new Strip(texts, engine, signal, "onpath-rows")
+        this.strip = new Strip(texts, engine, signal, "onpath-rows", {
+            choose: () => void this.shell.open("log"), remove: () => engine.send({ do: "RemoveLog" }),
+        })
         this.lenses = indices.map(i => new Lens(texts, engine, i, signal))
         this.overlay = new SymbolOverlay(engine)
         this.sketch = new Sketch(engine, signal)

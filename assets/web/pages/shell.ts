@@ -12,6 +12,7 @@ import { Header } from "../parts/header"
 import { help } from "../parts/help_sheet"
 import { Keep, takenShareCode } from "../parts/keep_sheet"
 import { Keys } from "../parts/keys"
+import { isLog, logFromFile, noLog } from "../parts/log_sheet"
 import { aboutLaws } from "../parts/law_sheet"
 import { chooseLesson } from "../parts/lesson_sheet"
 import { keepLook, keptLook } from "../parts/look"
@@ -24,7 +25,7 @@ import { isSheetOpen, type SheetDialog } from "../parts/sheet"
 /** What can be opened, with the title under which the search finds it. */
 const TITLES = {
     robots: "robots.choose", laws: "laws.about", compare: "compare.title", keep: "keep.title", lessons: "lesson.choose",
-    help: "help.title", display: "display.title", file: "design.files",
+    help: "help.title", display: "display.title", file: "design.files", log: "log.title",
     class: "class.title", teach: "class.teach",
 } as const
 type Opens = keyof typeof TITLES
@@ -48,6 +49,7 @@ export class Shell {
     private place = "" // the lab's in the class, as it was told last
     private asked = false // whether the teacher has been asked for a former place
     private readonly chosen = noFile()
+    private readonly chosenLog = noLog()
     private dropped: File | undefined // for the sheet that is opened next
     private leaves = false // whether it leaves the class by itself
 
@@ -96,7 +98,8 @@ export class Shell {
                 teach: this.isClassroom ? () => void this.open("teach") : null,
             }),
             keep: async () => (this.keep = new Keep(texts, await engine.ask("keep"), send, () => (this.keep = null), this.brought)).open(),
-            file: () => Promise.resolve(pathFromFile(texts, engine.files, this.chosen, this.dropped)),
+            file: () => Promise.resolve(pathFromFile(texts, engine.files, this.chosen, file => this.take(file, "log"), this.dropped)),
+            log: () => Promise.resolve(logFromFile(texts, engine.files, this.chosenLog, () => engine.log?.name ?? "", () => send({ do: "RemoveLog" }), this.dropped)),
             compare: async () => {
                 const data = await engine.ask("compare")
                 return (this.compare ??= new LawComparison(texts, {
@@ -110,7 +113,7 @@ export class Shell {
         this.opened = { name, dialog: await opens[name]() }
     }
 
-    /** A file that is dropped on the page is a path. */
+    /** A file that is dropped on the page is a path, or can only be the log of an arm. */
     private drop(event: DragEvent): void {
         if (!hasFile(event) || event.defaultPrevented) return
         event.preventDefault()
@@ -132,11 +135,11 @@ export class Shell {
         if (this.brought && this.engine.lab!.own) void this.open("keep")
     }
 
-    private take(file: File | undefined): void {
+    private take(file: File | undefined, as?: "log"): void {
         const { own, frozen } = this.engine.lab!
-        if (!file || !own || frozen || isSheetOpen()) return
+        if (!file || !own || frozen || (!as && isSheetOpen())) return
         this.dropped = file
-        void this.open("file")
+        void this.open(as ?? (isLog(file) ? "log" : "file"))
         this.dropped = undefined
     }
 

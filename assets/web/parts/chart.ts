@@ -13,6 +13,7 @@ export interface Line extends Curve {
     tone: Tone
     dashed: boolean // colour is not the only sign
     thin?: boolean // as of a robot's second quantity in the chart
+    logged?: boolean // of a real arm, on which nothing acts here
 }
 
 /** What a task wants of a line. */
@@ -293,7 +294,7 @@ export class Chart {
         spans.forEach((span, i) => {
             const end = spans[i + 1]?.from ?? Infinity
             if (span.from > until || end < from) return
-            for (const line of lines) {
+            for (const line of lines.filter(each => !each.logged)) {
                 const first = firstAfter(line.times, span.from), last = firstAfter(line.times, end)
                 let peak = -1
                 for (let k = first; k < last; k++) if (peak < 0 || Math.abs(line.values[k]!) > Math.abs(line.values[peak]!)) peak = k

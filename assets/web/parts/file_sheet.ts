@@ -5,6 +5,7 @@ import type { Answer, Files } from "../channel/files"
 import type { FileMessage, PathFile as Wished } from "../channel/messages"
 import { made, refuse, svg, switchInput, tell } from "../core/dom"
 import { phrase, type Texts } from "../core/words"
+import { mayBeLog } from "./log_sheet"
 import { pressed, SheetDialog } from "./sheet"
 
 const KINDS = ".csv,.txt,.tsv,.svg,.gcode,.nc,.ngc,.gc,.tap,.cnc"
@@ -25,8 +26,8 @@ export interface ChosenFile {
 
 export const noFile = (): ChosenFile => ({ file: null, use: USUAL, lines: [] })
 
-/** A sheet that takes a file, or has been given one. */
-export function pathFromFile(texts: Texts, files: Files, chosen: ChosenFile, dropped?: File): SheetDialog {
+/** A sheet that takes a file, or has been given one. `asLog` shows a file as the log of an arm instead. */
+export function pathFromFile(texts: Texts, files: Files, chosen: ChosenFile, asLog: (file: File) => void, dropped?: File): SheetDialog {
     const given = new AbortController()
     const sheet = new SheetDialog(texts, "file", phrase(texts, "design.files"), () => given.abort())
     const number = (key: string, [min, max, step]: readonly [number, number, number]) => {
@@ -86,7 +87,9 @@ export function pathFromFile(texts: Texts, files: Files, chosen: ChosenFile, dro
         draw()
         tell(state, isFollowed ? phrase(texts, "design.followed", { file: chosen.file!.name }) : "")
         refuse(refusal, answer.why)
-        helps.replaceChildren(...answer.helps.map(({ text, size, radius }) => pressed("", text, () => {
+        const { file } = chosen
+        const log = answer.state === "refused" && file && mayBeLog(file) ? [pressed("", phrase(texts, "log.instead"), () => asLog(file))] : []
+        helps.replaceChildren(...log, ...answer.helps.map(({ text, size, radius }) => pressed("", text, () => {
             put({ ...use(), size, radius })
             void follow()
         })))

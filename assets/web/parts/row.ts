@@ -1,7 +1,7 @@
 // One row of the plots under the stage: a chart of one quantity of all robots.
 
-import type { Engine, RowData, Sample } from "../core/engine"
-import { written, type Texts } from "../core/words"
+import type { Engine, LogCurves, RowData, Sample } from "../core/engine"
+import { phrase, written, type Texts } from "../core/words"
 import { axisFor } from "./axis"
 import { Chart, type Line } from "./chart"
 import { firstAfter } from "./curves"
@@ -12,6 +12,7 @@ export class Row {
     readonly chart: Chart
     readonly fields: string[]
     private readonly values: number[][] // of each line of each robot, in the row's unit
+    private logged: { log: LogCurves | null; lines: Line[] } = { log: null, lines: [] }
     private read = -Infinity // when the numbers were last changed
 
     constructor(private readonly texts: Texts, private readonly engine: Engine, readonly data: RowData, changed: () => void) {
@@ -41,12 +42,13 @@ export class Row {
         const { chart, engine, data } = this
         const { lines } = data
         const robots = engine.texts
-        chart.lines = this.values.map((values, i): Line => {
+        const robotLines = this.values.map((values, i): Line => {
             const { name, side } = robots[Math.floor(i / lines.length)]!, own = lines[i % lines.length]!
             const both = own.name ? `${name} ${own.name}` : name
             return { name: both, tone: `side${side}`, dashed: side === 1, thin: i % lines.length > 0, times, values }
         }).filter(line => !Number.isNaN(line.values[line.values.length - 1]))
-        const [low, high] = this.extent(times)
+        chart.lines = [...robotLines, ...this.log().filter(({ times }) => times[times.length - 1]! > chart.from)]
+        const [low, high] = this.extent(robotLines)
         const range = axisFor(chart.axes, low, high, this.least(low, high))
         chart.axes = { ...chart.axes, ...range }
     }
@@ -73,15 +75,29 @@ export class Row {
         }).join(", ")
     }
 
-    private extent(times: readonly number[]): [number, number] {
-        const { chart: { from, until }, values } = this
-        const [first, last] = [firstAfter(times, from), firstAfter(times, until)]
+    /** The curves of the log of a real arm, where there is one that has this quantity. */
+    private log(): readonly Line[] {
+        const { engine: { log }, texts, data: { lines, scale } } = this
+        if (log !== this.logged.log) {
+            const name = phrase(texts, "chart.log"), curves = lines.flatMap(({ field, at, name: own }): Line[] => {
+                const values = log?.fields.get(field)?.[at]?.map(value => value * scale)
+                return values ? [{ name: own ? `${name} ${own}` : name, tone: "ink", dashed: false, thin: true, logged: true, times: log!.times, values }] : []
+            })
+            this.logged = { log, lines: curves }
+        }
+        return this.logged.lines
+    }
+
+    private extent(robotLines: readonly Line[]): [number, number] {
+        const { from, until } = this.chart
         let [low, high] = [Infinity, -Infinity]
-        for (const line of values)
-            for (let i = first; i <= last && i < line.length; i++) {
-                if (line[i]! < low) low = line[i]!
-                if (line[i]! > high) high = line[i]!
+        for (const { times, values } of [...robotLines, ...this.log()]) {
+            const last = firstAfter(times, until)
+            for (let i = firstAfter(times, from); i <= last && i < values.length; i++) {
+                if (values[i]! < low) low = values[i]!
+                if (values[i]! > high) high = values[i]!
             }
+        }
         return low <= high ? [low, high] : [0, 0]
     }
 

@@ -8,7 +8,7 @@ import { phrase, written, type Texts } from "../core/words"
 import type { Chart, Limit } from "./chart"
 import { firstAfter, type Span } from "./curves"
 import { PhasePlane } from "./phase"
-import { PlotMenu } from "./plot_menu"
+import { PlotMenu, type LogActs } from "./plot_menu"
 import { Row } from "./row"
 import { tableOf } from "./table"
 
@@ -41,8 +41,8 @@ export class Strip {
     private forgets = false // whether the curves begin anew
     private dragged: { pointer: number; x: number } | null = null
 
-    /** `kept`: the name under which the browser keeps the rows that a user has chosen. */
-    constructor(private readonly texts: Texts, private readonly engine: Engine, ended?: AbortSignal, private readonly kept = "") {
+    /** `kept`: the name under which the browser keeps the rows that a user has chosen; `log`: what the menu does with the log of an arm. */
+    constructor(private readonly texts: Texts, private readonly engine: Engine, ended?: AbortSignal, private readonly kept = "", log?: LogActs) {
         const chosen = kept ? recalled(kept) : null
         this.chosen = Array.isArray(chosen) ? chosen.filter(each => typeof each === "string") : []
         const columns = () => this.rows.flatMap(({ chart, data }) => chart.lines.map(line => ({ ...line, name: this.heading(line.name, data.label), unit: data.unit })))
@@ -51,12 +51,14 @@ export class Strip {
         this.menu = new PlotMenu(texts, (name, on) => this.choose(name, on), () => {
             table.open = true
             table.querySelector("summary")!.focus()
-        })
+        }, log)
+        this.menu.remove.hidden = !engine.log
         engine.on(change => {
             this.stale = true
             if (change === "history") this.forgets = true
             if (change === "path" || change === "history") this.mark()
             if (change === "state" || change === "history") this.build()
+            if (change === "log") this.menu.remove.hidden = !engine.log
         }, ended)
         this.build()
         this.hand()

@@ -1,6 +1,6 @@
 // The engine of a page without a server: a simulation in WebAssembly, and its clock.
 
-import { sampleAt, type Act, type Change, type Engine, type PathShape, type RowData, type SideText, type State, type Vector } from "../core/engine"
+import { sampleAt, type Act, type Change, type Engine, type LogCurves, type PathShape, type RowData, type SideText, type State, type Vector } from "../core/engine"
 import { caption } from "./captions"
 import type { Moment, Simulation } from "./simulation"
 
@@ -57,6 +57,8 @@ export class LocalEngine implements Engine {
     }
 
     get rows(): readonly RowData[] { return this.simulation.data.rows }
+
+    get log(): LogCurves | null { return this.simulation.log }
 
     plot(): void {} // all fields are known
 

@@ -1,6 +1,6 @@
 // The simulated figure: sides on a path, time, and the reader's actions. It does not depend on a page.
 
-import type { Change, Sample } from "../core/engine"
+import { logCurves, type Change, type LogCurves, type Sample } from "../core/engine"
 import type { FigureData, Point, Setting } from "../core/figure_data"
 import { phrase } from "../core/words"
 import type { Kernels } from "./kernels"
@@ -33,6 +33,7 @@ export class Simulation {
     private readonly period = Math.min(Math.max(Math.round(PERIOD / this.data.dt), 1), MOST_TICKS) // in ticks
     /** Called at each change. */
     changed: (change: Change) => void = () => {}
+    private logged: { path: number; edited: boolean; curves: LogCurves } | null = null
     /** The last minute of this run. */
     recent: Moment[] = [this.moment()]
 
@@ -50,6 +51,17 @@ export class Simulation {
     }
 
     readonly sideName = (side: number): string => phrase(this.data, side ? "side.right" : "side.left")
+    /** What a real arm has logged; where it is on a path whose points have been moved is not known. */
+    get log(): LogCurves | null {
+        const { data: { logged: log }, path } = this, { edited } = this.followed
+        if (!log) return null
+        const known = this.logged
+        if (known?.path === path && known.edited === edited) return known.curves
+        const curves = logCurves(log.name, log.step, [...log.fields, ...(edited ? [] : log.paths[path]!)])
+        this.logged = { path, edited, curves }
+        return curves
+    }
+
     /** The poles, if a law has them. */
     get poles(): Channel[] {
         const side = this.data.controls.includes("poles") && this.sides.find(each => each.does().linear)

@@ -12,9 +12,10 @@ import numpy as np
 import pytest
 
 from onpath.app.channel.file_inbox import MOST_BYTES
-from onpath.app.exports import path_upload
+from onpath.app.exports import path_upload, upload_reader
 from onpath.app.exports.export_process import ExportProcess
-from onpath.app.exports.path_upload import PathReader, Read, Upload
+from onpath.app.exports.path_upload import Read, Upload
+from onpath.app.exports.upload_reader import UploadReader
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands.path import FollowCurve
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
@@ -74,7 +75,7 @@ WAIT = 60.0
 @pytest.fixture(scope="module", autouse=True)
 def stopped() -> Iterator[None]:
     yield
-    path_upload.process.stop()
+    upload_reader.process.stop()
 
 
 SIZED = Placing(fit=0.1)
@@ -100,7 +101,7 @@ def answer(content: bytes, name: str, placing: Placing = SIZED) -> Any:
         done.set()
 
     upload = Upload(name, content, placing, FIVE_BAR.name, FIVE_BAR.parameters())
-    PathReader().read(upload, "en", take, take)
+    UploadReader().read(upload, "en", take, take)
     assert done.wait(WAIT)
     return found[0]
 
@@ -136,9 +137,9 @@ def test_what_is_dear_is_refused_long_before_the_time_is_over(case: str) -> None
 @pytest.mark.thorough
 def test_a_file_that_takes_for_ever_is_ended_and_said(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(path_upload, "read_upload", wait_for_ever)
-    monkeypatch.setattr(path_upload, "SECONDS", 2.0)
+    monkeypatch.setattr(upload_reader, "SECONDS", 2.0)
     process = ExportProcess()
-    monkeypatch.setattr(path_upload, "process", process)
+    monkeypatch.setattr(upload_reader, "process", process)
     assert "took too long" in ENGLISH.sentence(answer(b"0,0\n", "a.csv"))
     process.stop()
 
@@ -150,7 +151,7 @@ def wait_for_ever(_upload: Upload, _language: str) -> None:
 @pytest.mark.thorough
 def test_a_library_that_fails_is_not_quoted(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(path_upload, "read_upload", fail)
-    monkeypatch.setattr(path_upload, "log_error", lambda _: None)
+    monkeypatch.setattr(upload_reader, "log_error", lambda _: None)
     assert ENGLISH.sentence(answer(b"0,0\n", "a.csv")) == "the file could not be read"
 
 
@@ -159,7 +160,7 @@ def fail(_upload: Upload, _language: str) -> None:
 
 
 def test_a_tab_reads_one_file_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
-    reader, found, done = PathReader(), list[Any](), threading.Event()
+    reader, found, done = UploadReader(), list[Any](), threading.Event()
     hold = threading.Event()
 
     class Slow:
@@ -167,7 +168,7 @@ def test_a_tab_reads_one_file_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None
             hold.wait(WAIT)
             return Read(FollowCurve(circle(0.05)))
 
-    monkeypatch.setattr(path_upload, "process", Slow())
+    monkeypatch.setattr(upload_reader, "process", Slow())
     upload = Upload("a.csv", b"0,0", Placing(), FIVE_BAR.name, FIVE_BAR.parameters())
     reader.read(upload, "en", lambda _: done.set(), found.append)
     reader.read(upload, "en", found.append, found.append)

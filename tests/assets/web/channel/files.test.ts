@@ -19,8 +19,8 @@ class Server {
 
     constructor(private readonly refuses = "", private readonly loses = -1) {}
 
-    private answer(message: Omit<FileMessage, "is" | "lines" | "part" | "helps">): void {
-        this.files.hear({ is: "file", lines: [], helps: [], ...message })
+    private answer(message: Omit<FileMessage, "is" | "lines" | "part" | "helps" | "columns" | "quantities">): void {
+        this.files.hear({ is: "file", lines: [], helps: [], columns: [], quantities: [], ...message })
     }
 
     private take(message: PageMessage): void {

@@ -2,14 +2,14 @@ import { found, TEXTS } from "../page"
 import assert from "node:assert/strict"
 import { test } from "node:test"
 import { Files } from "../../../../assets/web/channel/files"
-import type { PageMessage, SendFile } from "../../../../assets/web/channel/messages"
+import type { PageMessage, PathFile, SendFile } from "../../../../assets/web/channel/messages"
 import { noFile, pastedFile, pathFromFile } from "../../../../assets/web/parts/file_sheet"
 
-const NOTHING = { received: 3, why: "", lines: [], helps: [] }
+const NOTHING = { received: 3, why: "", lines: [], helps: [], columns: [], quantities: [] }
 
 function opened(chosenLast = noFile()): { sent: PageMessage[]; files: Files; body: HTMLElement; chosen: (file: File) => void } {
     const sent: PageMessage[] = [], files = new Files(message => sent.push(message))
-    const { body } = pathFromFile(TEXTS, files, chosenLast)
+    const { body } = pathFromFile(TEXTS, files, chosenLast, () => {})
     const chooser = body.querySelector<HTMLInputElement>("input[type=file]")!
     const chosen = (file: File) => {
         Object.defineProperty(chooser, "files", { value: [file], configurable: true })
@@ -53,7 +53,7 @@ test("what is set acts on the file that is followed, while the sheet is open; th
         await settled()
     }
     const begun = () => sent.filter((each): each is SendFile => each.is === "send")
-    const radii = () => begun().map(({ use }) => use.radius)
+    const radii = () => begun().map(({ use }) => (use as PathFile).radius)
     set(3) // there is no file yet
     assert.deepEqual(radii(), [])
     chosen(new File(["x,y"], "a.csv"))
@@ -73,7 +73,7 @@ test("what is set acts on the file that is followed, while the sheet is open; th
 
 test("a file that was dropped on the page is taken at once", () => {
     const sent: PageMessage[] = []
-    const { element } = pathFromFile(TEXTS, new Files(message => sent.push(message)), noFile(), new File(["x,y"], "star.svg"))
+    const { element } = pathFromFile(TEXTS, new Files(message => sent.push(message)), noFile(), () => {}, new File(["x,y"], "star.svg"))
     assert.equal((sent[0] as SendFile).name, "star.svg")
     element.remove()
 })
@@ -126,7 +126,7 @@ test("each line of a file is shown; those that are pressed or typed are taken, a
     typed.dispatchEvent(new Event("change"))
     assert.deepEqual(await press(), ["", "taken"])
     assert.equal(typed.value, "2")
-    assert.deepEqual(sends().map(({ use }) => use.parts), [[], [2], [1, 2], [1], [], [2]])
+    assert.deepEqual(sends().map(({ use }) => (use as PathFile).parts), [[], [2], [1, 2], [1], [], [2]])
     assert.equal(sends()[1]!.again, sends()[0]!.number)
     sheet()!.remove()
 })
@@ -140,7 +140,8 @@ test("what would help is a button that does it", async () => {
     await settled()
     assert.equal(body.querySelector("[role=alert]")!.textContent, "bends")
     ;(found(body, "button", "rounder") as HTMLButtonElement).click()
-    assert.deepEqual([sends()[1]!.use.size, sends()[1]!.use.radius], [100, 8])
+    const { size, radius } = sends()[1]!.use as PathFile
+    assert.deepEqual([size, radius], [100, 8])
     assert.equal(body.querySelector("[role=alert]")!.textContent, "")
     sheet()!.remove()
 })
@@ -164,7 +165,7 @@ test("a sheet that is opened again has the last file and its values", async () =
     assert.equal(sent.length, 0)
     numberOf(body, "size").valueAsNumber = 80
     numberOf(body, "size").dispatchEvent(new Event("change"))
-    assert.equal((sent[0] as SendFile).use.size, 80)
+    assert.equal(((sent[0] as SendFile).use as PathFile).size, 80)
     sheet()!.remove()
 })
 

@@ -44,3 +44,20 @@ test("above a plot stand its quantity and the values of all robots, with their n
     }
     assert.deepEqual([...seen].sort(), ["named", "none", "values"])
 })
+
+test("the log of an arm is a further line on the same axis, where it has the quantity", () => {
+    const times = [0, 1, 2], engine = {
+        texts: ROBOTS, field: () => [0, 0], log: { name: "arm.csv", times, fields: new Map([["u", [[0, 40, 0], [0, 2, NaN]]]]) },
+    }
+    const row = new Row(TEXTS, engine as unknown as Engine, DATA, () => {})
+    row.add({ time: 0, sides: [] })
+    Object.assign(row.chart, { from: 0, until: 10 })
+    row.follow([0])
+    const logged = row.chart.lines.filter(line => line.logged)
+    assert.deepEqual(logged.map(({ name, values }) => [name, values]), [["chart.log u₁", [0, 40, 0]], ["chart.log u₂", [0, 2, NaN]]])
+    assert.ok(row.chart.axes.top >= 40)
+    engine.log.fields = new Map()
+    Object.assign(engine, { log: { ...engine.log } })
+    row.follow([0])
+    assert.equal(row.chart.lines.length, 2 * ROBOTS.length)
+})
