@@ -16,6 +16,7 @@ from onpath.app.classroom.class_state import from_stored, to_stored
 from onpath.app.classroom.classroom import NOTHING_DONE, Classroom, ClassState
 from onpath.app.common.error_log import log_warning
 from onpath.app.common.periodic import Periodic
+from onpath.app.storage.deletions import seat_name
 from onpath.app.storage.engine import held
 from onpath.app.storage.records import HeldElsewhere, NotKept, Records
 from onpath.app.storage.schema import classes
@@ -41,6 +42,7 @@ class ClassKeeper:
         self._class, self._records, self._lost = classroom, records, lost
         self.id = class_id_of(classroom.key)
         self._kept: tuple[object, ...] = ()
+        self._seats = frozenset[str]()  # the students' labs as stored
         self._asked: float | None = None  # when the database was last asked; None: not here
         self._claims = 0
         self._opening, self._storing = threading.Lock(), threading.Lock()
@@ -114,7 +116,7 @@ class ClassKeeper:
             self._records.save(self.id, to_stored(ClassState(), self._class.clock()), classes)
             stored = self._records.claim(self.id, classes)
         self._class.restore(from_stored(stored, self._progress, self._class.clock()))
-        self._kept = ()
+        self._kept, self._seats = (), frozenset(self._class.members())
         self._claims += 1
 
     def _store(self) -> None:
@@ -124,11 +126,13 @@ class ClassKeeper:
             HeldElsewhere: another process owns the row.
             NotKept: the database cannot be used.
         """
-        stored = to_stored(self._class.state, self._class.clock())
+        state = self._class.state
+        stored, seats = to_stored(state, self._class.clock()), frozenset(state.members)
         mark = stored, self._records.generation
         if mark != self._kept:
-            self._records.save(self.id, stored, classes)
-            self._kept = mark
+            gone = [seat_name(self.id, lab) for lab in self._seats - seats]
+            self._records.save(self.id, stored, classes, gone=gone)
+            self._kept, self._seats = mark, seats
         elif not self._records.is_current(self.id, classes):
             raise HeldElsewhere
 

@@ -112,18 +112,22 @@ class Expiry:
         old = labs.c.updated < now - self._retention.days * DAY
         wanted = (old | labs.c.code.in_(surplus)) & (labs.c.updated < now - IN_USE)
         with self._records.transaction() as connection:
-            self._end_classes(connection, now)
+            ended = self._ended(connection, now)
             connection.execute(sa.delete(leases).where(leases.c.until < now - DAY))
-            return connection.execute(sa.delete(labs).where(wanted)).rowcount
+            count = connection.execute(sa.delete(labs).where(wanted)).rowcount
+        self._records.end_classes(ended)
+        return count
 
-    def _end_classes(self, connection: sa.Connection, now: float) -> None:
-        """Delete the classes whose time is over; that of a broken one is the longest."""
+    def _ended(self, connection: sa.Connection, now: float) -> dict[str, float]:
+        """The classes whose time is over; that of a broken one is the longest."""
         columns = classes.c.code, classes.c.updated, classes.c.state
         rows = connection.execute(sa.select(*columns).where(classes.c.updated < now - DAY)).all()
-        for code, updated, state in rows:
-            if updated < now - kept_days(state, self._retention.class_days) * DAY:
-                same = (classes.c.code == code) & (classes.c.updated == updated)
-                connection.execute(sa.delete(classes).where(same))
+        most = self._retention.class_days
+        return {
+            code: updated
+            for code, updated, state in rows
+            if updated < now - kept_days(state, most) * DAY
+        }
 
     def _run(self) -> None:
         try:

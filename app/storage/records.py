@@ -13,7 +13,7 @@ from __future__ import annotations
 import logging
 import threading
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -25,6 +25,7 @@ import platformdirs
 import sqlalchemy as sa
 from sqlalchemy import exc
 
+from onpath.app.storage.deletions import Deletions
 from onpath.app.storage.engine import (
     TRANSACTION_WAIT,
     VERSION,
@@ -99,8 +100,18 @@ def file_url(file: Path) -> sa.URL:
     return sa.URL.create("sqlite", database=str(file))
 
 
+def journal_file(url: sa.URL) -> Path:
+    """The file in which deletions are noted: beside an SQLite file, else in the data folder."""
+    file = file_of(url)
+    file = default_file().with_suffix("") if file is None else file
+    return file.with_name(f"{file.name}.deleted")
+
+
 class Records:
     """States of labs by code, and of classes. Thread-safe.
+
+    What is deleted by hand is noted in a file of its own, and deleted again from a backup that is
+    restored; see `Deletions`.
 
     Args:
         url: of the database, as for SQLAlchemy, such as "postgresql+psycopg://user@host/onpath";
@@ -135,6 +146,9 @@ class Records:
         self._identity: Identity | None = None
         self._engine = self._opened()
         self._journals = journals_of(self._file, self._identity)
+        is_kept = not self.warning and (self._file is not None or not self._is_sqlite)
+        self._deletions = Deletions(journal_file(self._url) if is_kept else None)
+        self._delete_again(TRANSACTION_WAIT)
 
     def load(self, code: str, table: sa.Table = labs) -> dict[str, Any] | None:
         """A state; None if there is none.
@@ -198,8 +212,17 @@ class Records:
             row = connection.execute(_STATEMENTS[table].read, {"of": code}).first()
         return row is None or row.owner == self.owner
 
-    def save(self, code: str, state: dict[str, Any], table: sa.Table = labs) -> None:
+    def save(
+        self,
+        code: str,
+        state: dict[str, Any],
+        table: sa.Table = labs,
+        gone: Iterable[str] = (),
+    ) -> None:
         """Replace a state that belongs to this process, or save one under a new code.
+
+        Args:
+            gone: names of what has been deleted from the state; see `Deletions`.
 
         Raises:
             NotStorable: the state is too large or not JSON; the previous one remains.
@@ -214,6 +237,7 @@ class Records:
             with self.transaction() as connection:
                 if not connection.execute(statements.change, values).rowcount:
                     connection.execute(statements.insert, values)
+                self._note(gone)
         except exc.IntegrityError:  # the row exists: another process's, or of a newer version
             with self.transaction() as connection:
                 row = connection.execute(statements.read, {"of": code}).first()
@@ -243,6 +267,7 @@ class Records:
                 take(connection, code, self.owner, self._now(connection))
                 count = connection.execute(sa.delete(labs).where(labs.c.code == code)).rowcount
                 give_up(connection, self.owner, code)
+                self._note([code])
                 return count
         except exc.IntegrityError:
             raise HeldElsewhere from None
@@ -254,10 +279,26 @@ class Records:
             NotKept: they could not be deleted.
         """
         with self.transaction() as connection:
-            connection.execute(sa.delete(classes))
-            count = connection.execute(sa.delete(labs)).rowcount
+            for table in (classes, labs):
+                self._note(connection.scalars(sa.select(table.c.code)))
+                count = connection.execute(sa.delete(table)).rowcount
             connection.execute(sa.delete(leases))
             return count
+
+    def end_classes(self, ended: Mapping[str, float]) -> None:
+        """Delete classes whose time is over, unless they have been changed meanwhile.
+
+        Args:
+            ended: codes of the classes, and when each was changed last.
+
+        Raises:
+            NotKept: they could not be deleted.
+        """
+        with self.transaction() as connection:
+            for code, updated in ended.items():
+                same = (classes.c.code == code) & (classes.c.updated == updated)
+                if connection.execute(sa.delete(classes).where(same)).rowcount:
+                    self._note([code])
 
     def close(self) -> None:
         """Close the database."""
@@ -281,6 +322,7 @@ class Records:
         except OSError as error:
             raise NotKept("error.database", reason=error.strerror or str(error)) from error
         self._journals = journals_of(self._file, self._identity)
+        self._delete_again(_left(until))
         self.generation += 1
         log.warning("%s was deleted or replaced: labs in use are saved to it again", self._file)
 
@@ -307,14 +349,40 @@ class Records:
             except (exc.SQLAlchemyError, UnicodeDecodeError) as error:
                 raise NotKept("error.database", reason=words(error)) from error
 
+    def _note(self, names: Iterable[str]) -> None:
+        """Note deletions, within their transaction.
+
+        Raises:
+            NotKept: they cannot be noted.
+        """
+        try:
+            self._deletions.note(names, self._clock())
+        except OSError as error:
+            raise NotKept("error.database", reason=error.strerror or str(error)) from error
+
+    def _delete_again(self, patience: float) -> None:
+        """Delete what had been deleted before a backup was restored."""
+        try:
+            connection = self._engine.connect().execution_options(patience=patience)
+            with connection, connection.begin():
+                count = self._deletions.apply(connection)
+        except (exc.SQLAlchemyError, UnicodeDecodeError) as error:
+            raise NotKept("error.database", reason=words(error)) from error
+        if count:
+            log.warning("%d labs, classes and seats of an old backup are deleted again", count)
+
     def _now(self, connection: sa.Connection) -> float:
         """The time that leases refer to, the same for all processes, [s]."""
         if connection.dialect.name == "postgresql":
             return connection.execute(_SERVER_TIME).scalar_one()
         return self._clock()
 
+    @property
+    def _is_sqlite(self) -> bool:
+        return self._url.get_backend_name() == "sqlite"
+
     def _opened(self) -> sa.Engine:
-        if self._url.get_backend_name() != "sqlite":
+        if not self._is_sqlite:
             return opened_server(self._url)
         try:
             engine, self._identity = opened_file(self._url, self._clock)

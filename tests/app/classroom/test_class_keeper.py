@@ -272,7 +272,7 @@ def test_a_push_is_not_sent_again_because_the_class_moves_twice(two: list[Proces
 def test_a_database_that_is_away_ends_no_class(
     two: list[Process], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def refuse(*_: object) -> None:
+    def refuse(*_: object, **more: object) -> None:
         raise NotKept("error.database_busy")
 
     one, other = two
