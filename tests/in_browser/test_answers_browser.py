@@ -89,7 +89,14 @@ def test_a_committed_choice_is_locked_and_judged_when_its_run_is_over(
     for told in (page.locator(".compared"), page.locator("#op-column > .step + [role=status]")):
         expect(told).to_contain_text("Not quite.")
         expect(told).to_contain_text("A few millimetres")
-        expect(told).to_contain_text("As far as before")
+        expect(told).not_to_contain_text("As far as before")
+    second = page.locator("[data-second]")
+    second.get_by_role("textbox").fill("30")
+    second.get_by_role("button", name="Check").click()
+    for told in ("Right.", "It runs through the centre", "As far as before"):
+        expect(second).to_contain_text(told)
+    (event,) = tab.lab.lessons.notes.by_item["4.0.second"]
+    assert (event.attempt, event.right) == (2, True)
     assert tab.errors == []
     context.close()
 

@@ -269,9 +269,15 @@ def answered(reader: SiteReader) -> None:
     for play in step.locator(".play button.main").all():
         play.click()
         reader.played(10)
-    for question in step.locator(".quiz").all():
+    for question in step.locator(".quiz[data-block]").all():
         question.get_by_role("radio").first.check()
         question.get_by_role("button", name="Check").click()
+    for second in step.locator("[data-second]:visible").all():
+        for option in second.get_by_role("radio").all()[:1]:
+            option.check()
+        for number in second.get_by_role("textbox").all():
+            number.fill("1")
+        second.get_by_role("button", name="Check").click()
     step.locator("details").evaluate_all("all => all.forEach(each => (each.open = true))")
 
 

@@ -16,6 +16,7 @@ from onpath.lessons.schema import (
     OpenQuestion,
     Prediction,
     Quiz,
+    SecondTry,
     Sketch,
     Step,
 )
@@ -168,6 +169,11 @@ class Pupil:
             wait_for(lambda: run.playing or run.has_played())
         wait_for(run.has_played)
         self.tab.wait_until_built()
+        found = run.prediction()
+        for place, block in enumerate(self.lesson.steps[int(found[0])].blocks if found else ()):
+            if isinstance(block, Choice) and block.second is not None and found is not None:
+                if run.is_second_tried(self.lesson, int(found[0]), place):
+                    self._try_again(block.second, f"{found[0]}.{place}")
 
     def choose(self, block: Choice | Quiz, again: bool = False) -> int:
         """Press an option of a question; returns its index in the lesson's file.
@@ -191,9 +197,26 @@ class Pupil:
         box.get_by_role("button").first.click()
         wait_for(lambda: notes.notes.quiz.get(key) == index)
         self.tab.wait_until_built()
-        if not block.options[index].right:
+        if block.options[index].right:
+            return
+        if block.second is not None:
+            self._try_again(block.second, f"{notes.index}.{place}")
+        else:
             self.tab.page.get_by_text("answer once more").first.wait_for()
             self._answer(place, block, again=True)
+
+    def _try_again(self, second: SecondTry, place: str) -> None:
+        """Answer what is asked after a wrong choice, in a block of a step, rightly."""
+        box = self.tab.page.locator(f'#op-column .step.open [data-second="{place}"]')
+        if second.number is None:
+            right = next(i for i, option in enumerate(second.options) if option.right)
+            box.locator(f'input[value="{right}"]').click()
+        else:
+            box.locator("input").fill(f"{second.number:g}")
+        box.get_by_role("button").first.click()
+        notes = self.tab.lab.lessons
+        wait_for(lambda: f"{place}.second" in notes.notes.by_item)
+        self.tab.wait_until_built()
 
     def _compute(self, block: NumberQuestion) -> None:
         if not self._right:

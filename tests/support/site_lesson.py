@@ -147,7 +147,7 @@ def _pull_and_let_go(reader: SiteReader) -> None:
 
 def _questions(reader: SiteReader) -> list[tuple[Locator, str]]:
     """The questions of the quiz, and the right answers."""
-    found = reader.page.locator(".step.open .quiz").all()
+    found = reader.page.locator(".step.open .quiz[data-block]").all()
     return list(zip(found, ("There is no time in", "Putting chocolates"), strict=True))
 
 
