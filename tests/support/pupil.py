@@ -169,11 +169,13 @@ class Pupil:
             wait_for(lambda: run.playing or run.has_played())
         wait_for(run.has_played)
         self.tab.wait_until_built()
-        found = run.prediction()
-        for place, block in enumerate(self.lesson.steps[int(found[0])].blocks if found else ()):
-            if isinstance(block, Choice) and block.second is not None and found is not None:
-                if run.is_second_tried(self.lesson, int(found[0]), place):
-                    self._try_again(block.second, f"{found[0]}.{place}")
+        if (found := run.prediction()) is None:
+            return
+        index = int(found[0])
+        for place, block in enumerate(self.lesson.steps[index].blocks):
+            tried = run.is_second_tried(self.lesson, index, place)
+            if tried and isinstance(block, Choice) and block.second is not None:
+                self._try_again(block.second, f"{index}.{place}")
 
     def choose(self, block: Choice | Quiz, again: bool = False) -> int:
         """Press an option of a question; returns its index in the lesson's file.
