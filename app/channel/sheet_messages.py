@@ -93,6 +93,26 @@ class ForgetMe(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", 
     """Delete the lab with everything that is stored of the student, and leave the class."""
 
 
+class IdentifyMyself(
+    Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="identify"
+):
+    """Say by what a platform knows the student, if the teacher has asked for it; or take it back.
+
+    Answered by `SeatAnswer`.
+    """
+
+    typed: Typed
+
+
+class LinkWord(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="link"):
+    """Give a word of one's own, which links two tests, or take it back with an empty one.
+
+    Answered by `SeatAnswer`.
+    """
+
+    word: Typed
+
+
 class Teach(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="teach"):
     """Open the teacher's page with the teacher's key.
 
@@ -102,7 +122,7 @@ class Teach(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag
     key: Typed
 
 
-SeatRequest = JoinClass | LeaveClass | AskPlace | ForgetMe | Teach
+SeatRequest = JoinClass | LeaveClass | AskPlace | ForgetMe | IdentifyMyself | LinkWord | Teach
 """What changes the lab's place in the class."""
 
 Request = (
@@ -363,6 +383,10 @@ class Told(Struct, frozen=True, kw_only=True, tag_field="is", tag="told"):
     text: str
 
 
+Seat = Literal["join", "leave", "ask_place", "forget_me", "identify", "link", "teach"]
+"""The names of what `SeatRequest` asks for."""
+
+
 class ClassMessage(Struct, frozen=True, kw_only=True, tag_field="is", tag="class"):
     """The lab's place in a class: when the page connects, and when it changes.
 
@@ -377,6 +401,9 @@ class ClassMessage(Struct, frozen=True, kw_only=True, tag_field="is", tag="class
         privacy: the address of the site's privacy notice; empty if it has none.
         away: the nickname of somebody who is away, and may be the same student; else empty.
         asked: whether the teacher has been asked to give that place back.
+        asks: by what a member is to identify oneself, as the label of the field; empty: by nothing.
+        identification: what the member has typed there.
+        linked: whether the member has given a word of one's own; "shared": so that another one has.
     """
 
     place: Literal["none", "elsewhere", "guest", "member"]
@@ -387,6 +414,9 @@ class ClassMessage(Struct, frozen=True, kw_only=True, tag_field="is", tag="class
     privacy: str = ""
     away: str = ""
     asked: bool = False
+    asks: str = ""
+    identification: str = ""
+    linked: Literal["", "own", "shared"] = ""
 
 
 class SeatAnswer(Struct, frozen=True, kw_only=True, tag_field="is", tag="seat"):
@@ -398,6 +428,6 @@ class SeatAnswer(Struct, frozen=True, kw_only=True, tag_field="is", tag="seat"):
         address: where the page of the class is, if it is another one; else empty.
     """
 
-    of: Literal["join", "leave", "ask_place", "forget_me", "teach"]
+    of: Seat
     why: str = ""
     address: str = ""

@@ -14,6 +14,9 @@ from onpath.app.common.visible_text import comparison_key, readable, shortened
 from onpath.models.errors import CodedError
 
 LONGEST_NAME = 24  # [visible characters] of a student's name
+LONGEST_ID = 200  # [characters] of what identifies a student elsewhere
+SHORTEST_WORD = 6
+WORD_DIGITS = 16  # hexadecimal ones, of the hash of a word
 CODE_LENGTH = 6
 """Of a class code: short enough for a projector, long enough not to be guessed; see `Admission`."""
 
@@ -87,6 +90,28 @@ def cleaned(name: str) -> str:
     if not short:
         raise CodedError("error.no_nickname")
     return short
+
+
+def identified(typed: str) -> str:
+    """What identifies a student elsewhere, as it is stored; it may be empty."""
+    return "".join(each for each in typed[:LONGEST_ID] if each.isprintable()).strip()
+
+
+def word_hash(key: str, word: str) -> str:
+    """The keyed hash of a word that a student makes up; empty without a word.
+
+    Whoever does not know the teacher's key cannot tell which words have a hash. Capitals and
+    blanks do not count, so that a word is the same months later.
+
+    Raises:
+        ValueError: the word is too short.
+    """
+    plain = comparison_key(word[:LONGEST_ID]).replace(" ", "")
+    if not plain:
+        return ""
+    if len(plain) < SHORTEST_WORD:
+        raise CodedError("error.word_too_short", least=SHORTEST_WORD)
+    return hmac.new(key.encode(), f"word {plain}".encode(), "sha256").hexdigest()[:WORD_DIGITS]
 
 
 def not_among(others: set[str], name: str) -> str:

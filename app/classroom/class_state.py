@@ -14,6 +14,7 @@ from onpath.app.classroom.classroom import (
     MOST_VOTES,
     ClassState,
     Display,
+    Identification,
     Member,
     Orders,
     Push,
@@ -38,6 +39,8 @@ class StoredMember(msgspec.Struct, frozen=True):
     name: str
     taken: Count
     aside: bool = False
+    identification: str = ""
+    word: str = ""
 
 
 class StoredClass(msgspec.Struct, frozen=True):
@@ -53,6 +56,7 @@ class StoredClass(msgspec.Struct, frozen=True):
     display: Any = None
     votes: list[Any] = []
     days: Count = 0
+    asks: Identification = ""
     phones: Annotated[list[str], msgspec.Meta(max_length=10_000)] = []
 
 
@@ -67,7 +71,15 @@ def to_stored(state: ClassState, now: float) -> Stored:
     """
     orders = state.orders
     members = [
-        StoredMember(lab, each.number, each.name, _settled(each, now), each.aside)
+        StoredMember(
+            session=lab,
+            number=each.number,
+            name=each.name,
+            taken=_settled(each, now),
+            aside=each.aside,
+            identification=each.identification,
+            word=each.word,
+        )
         for lab, each in state.members.items()
     ]
     stored = StoredClass(
@@ -81,6 +93,7 @@ def to_stored(state: ClassState, now: float) -> Stored:
         display=asdict(state.display),
         votes=[asdict(each) for each in state.votes],
         days=state.days,
+        asks=state.asks,
         phones=list(state.phones),
     )
     return msgspec.to_builtins(stored)
@@ -120,6 +133,7 @@ def from_stored(data: Stored | None, progress: Callable[[str], Progress], now: f
         members=members,
         votes=tuple(filter(None, map(_vote, kept.votes[-MOST_VOTES:]))),
         days=kept.days,
+        asks=kept.asks,
         phones=tuple(kept.phones),
     )
 
@@ -132,7 +146,13 @@ def _member(data: Any) -> tuple[str, Member] | None:
         log_warning("a student of the class cannot be read: %s", error)
         return None
     return kept.session, Member(
-        kept.number, name, connected=False, taken=kept.taken, aside=kept.aside
+        number=kept.number,
+        name=name,
+        connected=False,
+        taken=kept.taken,
+        aside=kept.aside,
+        identification=kept.identification,
+        word=kept.word,
     )
 
 

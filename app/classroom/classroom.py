@@ -14,13 +14,16 @@ import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import inf
+from typing import Literal, get_args
 
 from onpath.app.classroom.admission import (
     Admission,
     class_code_of,
     cleaned,
+    identified,
     new_pass,
     not_among,
+    word_hash,
 )
 from onpath.app.common.access_codes import new_code
 from onpath.app.common.visible_text import comparison_key
@@ -36,6 +39,9 @@ MOST_ASKING = 8  # pages that may ask at once to become a teacher's
 NUMBER_LASTS = 120.0  # [s] for which a number lets a page in
 Push = TakeSetup | TakeStep
 NOTHING_DONE = Progress()
+Identification = Literal["", "email", "idnumber", "username"]
+"""By what learning platforms know a student, as Moodle names it."""
+IDENTIFICATIONS: dict[str, Identification] = {each: each for each in get_args(Identification)}
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +58,8 @@ class Member:
         given: time of that push, on the class's clock, [s].
         gains: the lab's K1 to K5 at the last update; empty before the first one.
         aside: whether the teacher has set the student aside, who was away; it ends with the return.
+        identification: what the student typed when asked for it; see `ClassState.asks`.
+        word: the keyed hash of a word that the student has made up, or empty; see `word_hash`.
     """
 
     number: int
@@ -63,6 +71,8 @@ class Member:
     given: float = -inf
     gains: tuple[float, ...] = ()
     aside: bool = False
+    identification: str = ""
+    word: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,6 +125,7 @@ class ClassState:
         members: students by lab code, in order of joining.
         votes: on the questions that were put to the class.
         days: after so many days without a change, the class is deleted; 0: as many as may be.
+        asks: by what students are to identify themselves; empty: they are not asked.
     """
 
     joined: int = 0
@@ -125,6 +136,7 @@ class ClassState:
     members: Mapping[str, Member] = field(default_factory=dict)
     votes: tuple[Vote, ...] = ()
     days: int = 0
+    asks: Identification = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -345,6 +357,28 @@ class Classroom:
             for lab in away:
                 self.note(lab, aside=True)
             return len(away)
+
+    def ask_for(self, identification: Identification) -> None:
+        """Ask students to identify themselves; what they typed for something else is deleted."""
+        with self._lock:
+            if identification != self.state.asks:
+                for lab in self.state.members:
+                    self.note(lab, identification="")
+                self.state = replace(self.state, asks=identification)
+
+    def identify(self, lab: str, typed: str) -> None:
+        """Note what identifies a student elsewhere, if the teacher has asked for it."""
+        with self._lock:
+            if self.state.asks:
+                self.note(lab, identification=identified(typed))
+
+    def link(self, lab: str, word: str) -> None:
+        """Note a word that a student has made up, which links two tests over months; or none.
+
+        Raises:
+            ValueError: it is too short.
+        """
+        self.note(lab, word=word_hash(self.key, word))
 
     def note(self, lab: str, **changes: object) -> None:
         """Update a member. Does nothing if the student has left."""

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from hashlib import sha256
+from types import MappingProxyType
 
 from onpath.app.classroom.class_record import Row, Sheet
 from onpath.app.classroom.results import Distribution
@@ -70,35 +71,42 @@ def gain_view(
 
 
 def sheets_without_names(
-    test: Lesson, students: Sequence[tuple[str, Progress]], code: str
+    test: Lesson,
+    students: Sequence[tuple[str, Progress]],
+    code: str,
+    linked: Mapping[str, str] = MappingProxyType({}),
 ) -> list[Sheet]:
     """Sheets of the record: the class, and every student who has handed in, without names.
 
-    A student has the same pseudonym in both tests. It does not reveal who the student is.
+    A student has the same pseudonym in both tests. It does not reveal who the student is. `word` is
+    the hash of a word that the student made up. It is the same in the records of other months, and
+    of the student's other labs.
 
     Args:
         students: lab code and progress of each student.
         code: the class code.
+        linked: hashes of words, by lab code.
     """
     hidden = {
-        sha256(f"{code} {lab}".encode()).hexdigest()[:8]: progress for lab, progress in students
+        sha256(f"{code} {lab}".encode()).hexdigest()[:8]: (linked.get(lab, ""), progress)
+        for lab, progress in students
     }
     gain = class_gain(test, [progress for _, progress in students])
-    columns = ("pseudonym", "test", "question", "item", "result", "chosen", "right")
+    columns = ("pseudonym", "word", "test", "question", "item", "result", "chosen", "right")
     return [
         Sheet("Concept test", columns, _test_rows(test, sorted(hidden.items()))),
         Sheet("Concept test, class", ("test", "of", "students", "value"), _class_rows(gain)),
     ]
 
 
-def _test_rows(test: Lesson, students: Iterable[tuple[str, Progress]]) -> Iterator[Row]:
-    for pseudonym, progress in students:
+def _test_rows(test: Lesson, students: Iterable[tuple[str, tuple[str, Progress]]]) -> Iterator[Row]:
+    for pseudonym, (word, progress) in students:
         for name in TESTS:
             if (notes := notes_of(progress, name)) is None:
                 continue
             asked = zip(test.steps, chosen_in(test, notes), right_in(test, notes), strict=True)
             for number, (step, option, right) in enumerate(asked, 1):
-                row = {"pseudonym": pseudonym, "test": name, "question": number}
+                row = {"pseudonym": pseudonym, "word": word, "test": name, "question": number}
                 row |= {"item": step.title, "right": int(right)}
                 if option is None:
                     yield {**row, "result": "open"}

@@ -25,6 +25,7 @@ from onpath.app.simulation.scheduled_lab import ScheduledLab
 from onpath.app.storage.lab_state import keep
 from onpath.app.storage.records import HeldElsewhere, Records
 from onpath.app.storage.write_behind import WriteBehind
+from onpath.app.view.sheets import NOTHING_TOLD, OwnPlace
 from onpath.app.viser_adapter.addresses import class_address
 from onpath.lessons.course import Course
 from onpath.lessons.progress import Progress
@@ -148,12 +149,23 @@ class ClassService:
             self._class.claim(code)
             self._places[code] = visit, enter
 
+        def own() -> OwnPlace:
+            member, members = self._class.member(code), self._class.members().values()
+            if member is None:
+                return NOTHING_TOLD
+            same = member.word and sum(each.word == member.word for each in members)
+            linked = "" if not same else "own" if same == 1 else "shared"
+            return OwnPlace(self._class.state.asks, member.identification, linked)
+
         return ClassSeat(
             join=join,
             leave=lambda: self._class.leave(code),
             away=away,
             ask_place=ask_place,
             forget=lambda: self._delete(code),
+            identify=partial(self._class.identify, code),
+            link=partial(self._class.link, code),
+            own=own,
             days=lambda: self._class.days,
             teach=teach,
             code=self._class.code,

@@ -9,6 +9,7 @@ from onpath.app.classroom.teaching.teacher_context import TeacherContext
 from onpath.app.common.presses import Presses
 from onpath.app.scene.client_scene import Look
 from onpath.app.server.page_text import PageText
+from onpath.app.view.sheets import NOTHING_TOLD, OwnPlace
 from onpath.lessons.course import Course
 
 
@@ -26,6 +27,9 @@ class ClassSeat:
         ask_place: asks the teacher for it.
         forget: deletes the lab with everything that is stored of the student; raises ValueError or
             OSError with a message.
+        identify: notes what identifies the student elsewhere.
+        link: notes a word of the student's own; raises ValueError with a message.
+        own: what the student has told of oneself.
         days: for how many days without a change the class is kept; 0 if it is not stored.
         code: the class code, if the page's address has it; else a student types it.
     """
@@ -36,6 +40,9 @@ class ClassSeat:
     away: Callable[[], tuple[str, bool]] = lambda: ("", False)
     ask_place: Callable[[], None] = lambda: None
     forget: Callable[[], None] = lambda: None
+    identify: Callable[[str], None] = lambda _: None
+    link: Callable[[str], None] = lambda _: None
+    own: Callable[[], OwnPlace] = lambda: NOTHING_TOLD
     days: Callable[[], int] = int
     code: str = ""
 

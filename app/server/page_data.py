@@ -51,7 +51,7 @@ from onpath.app.server.page_log import PageLog
 from onpath.app.server.page_requests import PageRequests
 from onpath.app.server.tab_visibility import TabVisibility
 from onpath.app.view.page_words import words_message
-from onpath.app.view.sheets import class_message
+from onpath.app.view.sheets import NOTHING_TOLD, class_message
 from onpath.app.view.state_message import Projection
 from onpath.app.view.symbol_geometry import has_meaning, symbol_lines
 from onpath.app.viser_adapter.data_channel import Message, PageStream
@@ -230,6 +230,7 @@ class PageData:
             today=date.today(),
             class_days=0 if context.seat is None else context.seat.days(),
             away=("", False) if context.seat is None else context.seat.away(),
+            own=NOTHING_TOLD if context.seat is None else context.seat.own(),
         )
 
     def _of_forms(self, snapshot: PageSnapshot, scene: ClientScene | None) -> list[Message]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Literal, NoReturn
+from typing import NoReturn
 
 from msgspec import Struct
 
@@ -16,11 +16,14 @@ from onpath.app.channel.sheet_messages import (
     EnterLab,
     ForgetMe,
     Freehand,
+    IdentifyMyself,
     JoinClass,
     LeaveClass,
+    LinkWord,
     Prefer,
     Request,
     ResetView,
+    Seat,
     SeatAnswer,
     SeatRequest,
     Teach,
@@ -87,7 +90,7 @@ class PageRequests:
                 self._press(lambda: choose(robot, tip), self._context.remark, words)
             case CompareLaws(laws=laws, obstruction=obstruction):
                 self._compare(laws, obstruction, snapshot, words, tell)
-            case JoinClass() | LeaveClass() | AskPlace() | ForgetMe() | Teach():
+            case _:
                 self._sit(request, words, tell)
 
     def _sit(self, request: SeatRequest, words: Words, tell: Tell) -> None:
@@ -140,9 +143,7 @@ def _no_class(*_: str) -> NoReturn:
 _NO_SEAT = ClassSeat(join=_no_class, leave=_no_class, teach=_no_class)
 
 
-def _seat_act(
-    request: SeatRequest, seat: ClassSeat
-) -> tuple[Literal["join", "leave", "ask_place", "forget_me", "teach"], Callable[[], str]]:
+def _seat_act(request: SeatRequest, seat: ClassSeat) -> tuple[Seat, Callable[[], str]]:
     """The name of a request, and what it does; that returns the address to go to, or nothing."""
     match request:
         case JoinClass(code=code, name=name):
@@ -153,5 +154,9 @@ def _seat_act(
             return "ask_place", lambda: seat.ask_place() or ""
         case ForgetMe():
             return "forget_me", lambda: seat.forget() or ""
+        case IdentifyMyself(typed=typed):
+            return "identify", lambda: seat.identify(typed) or ""
+        case LinkWord(word=word):
+            return "link", lambda: seat.link(word) or ""
         case Teach(key=key):
             return "teach", lambda: seat.teach(key)

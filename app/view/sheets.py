@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from datetime import date, timedelta
+from typing import Literal
 
 from msgspec import Struct
 
@@ -78,6 +79,30 @@ def display_sheet(preferences: Mapping[str, bool]) -> DisplaySheet:
     )
 
 
+@dataclass(frozen=True, slots=True)
+class OwnPlace:
+    """What a student has told of oneself in the class; see `ClassMessage`.
+
+    Attributes:
+        asks: by what students are to identify themselves: "email", "idnumber" or "username".
+        identification: what the student has typed.
+        linked: "own" with a word, "shared" if another student has the same one.
+    """
+
+    asks: str = ""
+    identification: str = ""
+    linked: Literal["", "own", "shared"] = ""
+
+
+ASKED = {
+    "email": "class.id_email",
+    "idnumber": "class.id_idnumber",
+    "username": "class.id_username",
+}
+"""The label of the field in which a student types each identification."""
+NOTHING_TOLD = OwnPlace()
+
+
 def _stored(words: Words, days: int, class_days: int, today: date) -> str:
     """What is stored of a student, and until when."""
     stored = words("class.stored", days=days)
@@ -98,6 +123,7 @@ def class_message(
     class_days: int = 0,
     today: date = date.min,
     away: tuple[str, bool] = ("", False),
+    own: OwnPlace = NOTHING_TOLD,
 ) -> ClassMessage:
     """The lab's place in a class.
 
@@ -113,6 +139,7 @@ def class_message(
             stored.
         today: from which these days count.
         away: see `ClassMessage.away` and `asked`.
+        own: what the student has told.
     """
     if place is None:
         return ClassMessage(place="none")
@@ -127,4 +154,7 @@ def class_message(
         privacy=privacy,
         away=away[0],
         asked=away[1],
+        asks=words(ASKED[own.asks]) if own.asks else "",
+        identification=own.identification,
+        linked=own.linked,
     )

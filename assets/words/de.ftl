@@ -308,6 +308,22 @@ class-days =
         [one] nach einem Tag
        *[other] nach { $days } Tagen
     }
+class-asks = Studierende fragen nach
+class-asks_nothing = nichts, was sie identifiziert
+class-asks_email = ihrer E-Mail-Adresse
+class-asks_idnumber = ihrer Matrikelnummer
+class-asks_username = ihrem Anmeldenamen
+class-grades = Die Ergebnisse haben dann auch ein Blatt Grades mit Punkten fürs Mitmachen in jeder Lektion: Es zählt, dass geantwortet wurde, nicht, dass es stimmt. In Moodle kommt es unter Bewertungen, Import, Aus einer Tabelle einfügen hinein.
+class-id_email = E-Mail-Adresse (deine Lehrkraft sieht sie)
+class-id_idnumber = Matrikelnummer (deine Lehrkraft sieht sie)
+class-id_username = Anmeldename (deine Lehrkraft sieht ihn)
+class-id_hint = Für eine Liste, wer mitgemacht hat; du kannst das Feld leer lassen. Wird mit deinem Spitznamen gelöscht.
+class-id_send = Senden
+class-word = Ein eigenes Wort
+class-word_hint = Für Untersuchungen, wenn du magst: Gib vor und nach dem Kurs dasselbe Wort ein, auf irgendeinem Gerät, dann gehören deine beiden Tests zusammen, auch nach Monaten. Das Wort zeigt nichts und löscht nichts. Aufbewahrt wird nur ein Hash davon. Mindestens 6 Zeichen; nimm kein Passwort.
+class-word_send = Verknüpfen
+class-word_own = Dein Wort ist gespeichert. Ein anderes ersetzt es, ein leeres Feld entfernt es.
+class-word_shared = Jemand anders in dieser Klasse hat dasselbe Wort, und eure Tests geraten durcheinander. Nimm ein anderes.
 class-forget_me = Alles löschen, was von mir gespeichert ist
 class-forget_me_sure = Dein Labor mit deinen Vorhersagen, gezeichneten Kurven, Antworten und Aufgaben und deinen Platz in der Klasse löschen? Das lässt sich nicht rückgängig machen. Diese Seite beginnt mit einem neuen Labor.
 class-privacy = Datenschutzerklärung
@@ -1720,6 +1736,7 @@ error-share_empty = Dieser Code enthält keinen Aufbau.
 error-share_strange = Dieser Code enthält Dinge, die kein Labor hat.
 error-share_does_not_fit = Dieser Code passt nicht zu diesem OnPath: { $error }.
 error-no_such_lab = zu diesem Code gibt es kein Labor
+error-word_too_short = Ein Wort hat mindestens { $least } Zeichen.
 error-number_is_gone = diese Nummer zeigt kein Handy mehr; es hat inzwischen eine andere
 error-lab_is_open = dieses Labor ist in einem anderen Fenster offen: Schließe erst jenes
 error-lab_code_length = der Code eines Labors hat { $length } Buchstaben und Ziffern, wie { $example }

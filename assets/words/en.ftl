@@ -310,6 +310,22 @@ class-days =
         [one] after a day
        *[other] after { $days } days
     }
+class-asks = Ask students for
+class-asks_nothing = nothing that identifies them
+class-asks_email = their e-mail address
+class-asks_idnumber = their ID number
+class-asks_username = their user name
+class-grades = The record also has a sheet Grades, with points for taking part in each lesson: for what was answered, not for being right. Copy it into Moodle: Grades, Import, Paste from spreadsheet.
+class-id_email = E-mail address (your teacher sees this)
+class-id_idnumber = ID number (your teacher sees this)
+class-id_username = User name (your teacher sees this)
+class-id_hint = For a list of who took part; you may leave it empty. It is deleted with your nickname.
+class-id_send = Send
+class-word = A word of your own
+class-word_hint = For studies, if you like: type the same word before and after the course, on any device, and your two tests are linked, also after months. The word shows nothing and deletes nothing. Only a hash of it is kept. At least 6 characters; do not use a password.
+class-word_send = Link
+class-word_own = Your word is kept. Send another one to replace it, or an empty field to remove it.
+class-word_shared = Somebody else in this class has the same word, so your tests are mixed up. Choose another one.
 class-forget_me = Delete everything that is stored of me
 class-forget_me_sure = Delete your lab with your predictions, drawn curves, answers and tasks, and your place in the class? It cannot be undone. This page starts again with a new lab.
 class-privacy = Privacy notice
@@ -1303,6 +1319,7 @@ error-share_empty = This share code contains no set-up.
 error-share_strange = This share code contains things that no lab has.
 error-share_does_not_fit = This share code does not fit this version of OnPath: { $error }.
 error-no_such_lab = there is no lab with this code
+error-word_too_short = A word has at least { $least } characters.
 error-number_is_gone = no phone shows this number any more; it has another one by now
 error-lab_is_open = this lab is open in another window: close that one first
 error-lab_code_length = a lab code has { $length } letters and digits, like { $example }

@@ -132,6 +132,8 @@ ASKED: dict[str, dict[str, Any]] = {
     "leave": {},
     "ask_place": {},
     "forget_me": {},
+    "identify": {"typed": "123"},
+    "link": {"word": "green cactus"},
     "teach": {"key": "k7mf2xqa9tzr"},
     "lead": {"do": "freeze", "member": 1},
 }

@@ -247,10 +247,13 @@ class TeacherForm:
         return _group("gains", words("gains.title"), fields)
 
     def _record(self) -> FormGroup:
-        words = self._words
+        words, asks = self._words, self._teaching.classroom.state.asks
+        grades = [_note("grades", words("class.grades"))] if asks else []
         fields = [
             _note("record_text", words("class.record_text")),
             *self._of_days(),
+            _choice("asks", words("class.asks"), self._identifications()),
+            *grades,
             _button("record", words("class.export")),
             _button("end", words("class.end"), asks=words("class.end_sure")),
             _button(
@@ -266,6 +269,15 @@ class TeacherForm:
         if most:
             options = {words("class.days", days=days): days for days in offered}
             yield _choice("days", words("class.keep_for"), options)
+
+    def _identifications(self) -> dict[str, FieldValue]:
+        """By what students may be asked to identify themselves."""
+        return {
+            self._words("class.asks_nothing"): "",
+            self._words("class.asks_email"): "email",
+            self._words("class.asks_idnumber"): "idnumber",
+            self._words("class.asks_username"): "username",
+        }
 
     # Values.
 
@@ -303,6 +315,7 @@ class TeacherForm:
         yield "setup", chosen.setup
         yield "pair", chosen.pair
         yield "days", classroom.days
+        yield "asks", classroom.state.asks
         gains = [each.gains for each in members]
         yield "gains", gains_view(PAIRS[chosen.pair], gains, words, large)
         yield "code_again", code

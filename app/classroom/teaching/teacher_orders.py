@@ -11,9 +11,10 @@ from typing import Any
 from onpath.app.channel.class_messages import Lead, Order
 from onpath.app.channel.form_messages import FieldValue
 from onpath.app.classroom.class_record import class_record
-from onpath.app.classroom.classroom import Display
+from onpath.app.classroom.classroom import IDENTIFICATIONS, Display
 from onpath.app.classroom.concept_test_results import sheets_without_names
 from onpath.app.classroom.gains_html import PAIRS
+from onpath.app.classroom.grade_list import grade_sheet
 from onpath.app.classroom.results import (
     asked_at,
     have_all_answered,
@@ -61,6 +62,7 @@ class TeacherOrders:
             "lesson": self._choose_lesson,
             "picked": self._pick,
             "route": self._choose_route,
+            "asks": self._ask_for,
             "pace_lesson": self._choose_pace,
         }
         self._of_numbers: Mapping[str, Callable[[Any], object]] = {
@@ -210,6 +212,10 @@ class TeacherOrders:
         if int(days) in range(1, self._class.most_days + 1):
             self._class.keep_for(int(days))
 
+    def _ask_for(self, identification: str) -> None:
+        if (known := IDENTIFICATIONS.get(identification)) is not None:
+            self._class.ask_for(known)
+
     def _choose_pace(self, lesson: str) -> None:
         if self._course.has(lesson):
             self._chosen.pace = Pace(lesson, 0, 0)
@@ -334,6 +340,9 @@ class TeacherOrders:
         }
         students = [(lab, member.progress) for lab, member in members.items()]
         test = course.lesson(BEFORE, language) if course.tests else None
-        tests = sheets_without_names(test, students, self._class.code) if test else []
+        words = {lab: member.word for lab, member in members.items()}
+        more = sheets_without_names(test, students, self._class.code, words) if test else []
+        grades = grade_sheet(members.values(), course, language, self._class.state.asks)
+        more += [] if grades is None else [grades]
         votes = self._class.votes
-        return class_record(members.values(), course, language, made, more=tests, votes=votes)
+        return class_record(members.values(), course, language, made, more=more, votes=votes)

@@ -292,6 +292,22 @@ export interface ForgetMe {
     is: "forget_me"
 }
 
+/** Say by what a platform knows the student, if the teacher has asked for it; or take it back.
+ *
+ * Answered by `SeatAnswer`. */
+export interface IdentifyMyself {
+    is: "identify"
+    typed: string
+}
+
+/** Give a word of one's own, which links two tests, or take it back with an empty one.
+ *
+ * Answered by `SeatAnswer`. */
+export interface LinkWord {
+    is: "link"
+    word: string
+}
+
 /** Open the teacher's page with the teacher's key.
  *
  * Answered by `SeatAnswer`, unless the page becomes the teacher's. */
@@ -386,6 +402,8 @@ export type PageMessage =
     | LeaveClass
     | AskPlace
     | ForgetMe
+    | IdentifyMyself
+    | LinkWord
     | Teach
 
 /** The code of the page's lab, which its browser keeps before those of its other labs. */
@@ -929,13 +947,19 @@ export interface ClassMessage {
     away: string
     /** whether the teacher has been asked to give that place back. */
     asked: boolean
+    /** by what a member is to identify oneself, as the label of the field; empty: by nothing. */
+    asks: string
+    /** what the member has typed there. */
+    identification: string
+    /** whether the member has given a word of one's own; "shared": so that another one has. */
+    linked: "" | "own" | "shared"
 }
 
 /** What has come of a `SeatRequest`. */
 export interface SeatAnswer {
     is: "seat"
     /** the request. */
-    of: "ask_place" | "forget_me" | "join" | "leave" | "teach"
+    of: "ask_place" | "forget_me" | "identify" | "join" | "leave" | "link" | "teach"
     /** it was refused: a sentence in the page's language; else empty. */
     why: string
     /** where the page of the class is, if it is another one; else empty. */

@@ -10,6 +10,7 @@ import { pressed, SheetDialog } from "./sheet"
 
 const DRAFT = "nickname"
 const LONGEST = 200 // characters of a code or a name, as `Typed` of app/channel/sheet_messages.py
+const PLAIN = { type: "text", autocomplete: "off", autocapitalize: "off", spellcheck: false, maxLength: LONGEST } as const
 
 export class ClassSheet {
     private readonly sheet: SheetDialog
@@ -86,6 +87,7 @@ export class ClassSheet {
     private member(seat: ClassMessage): HTMLElement[] {
         const { texts } = this
         keepDraft(DRAFT, null)
+        const own = [...seat.asks ? [this.tells(seat.asks, "class.id_hint", "class.id_send", seat.identification, typed => ({ is: "identify", typed }))] : [], this.word(seat)]
         const former = seat.away ? this.former(seat) : []
         const [before = "", after = ""] = phrase(texts, "class.member").split("{name}")
         const leave = (this.acts = pressed("", phrase(texts, "class.leave"), () => {
@@ -95,7 +97,36 @@ export class ClassSheet {
         const forget = pressed("warning", phrase(texts, "class.forget_me"), () => {
             confirm(texts, phrase(texts, "class.forget_me"), phrase(texts, "class.forget_me_sure"), () => { this.send({ is: "forget_me" }) })
         })
-        return [made("p", "", before, made("b", "", made("bdi", "", seat.name)), after), made("p", "", phrase(texts, "class.then")), ...former, this.stored(seat), leave, forget, this.refusal]
+        return [made("p", "", before, made("b", "", made("bdi", "", seat.name)), after), made("p", "", phrase(texts, "class.then")), ...former, ...own, this.stored(seat), leave, forget, this.refusal]
+    }
+
+    /** A word that links two tests over months. */
+    private word({ linked }: ClassMessage): HTMLElement {
+        const { texts } = this, form = this.tells(phrase(texts, "class.word"), "class.word_hint", "class.word_send", "", word => ({ is: "link", word }))
+        const fold = made("details", "word", made("summary", "", phrase(texts, "class.word")), form)
+        fold.open = linked === "shared"
+        if (linked) form.prepend(made("p", linked === "shared" ? "refusal" : "", phrase(texts, linked === "shared" ? "class.word_shared" : "class.word_own")))
+        return fold
+    }
+
+    /** A field that may stay empty, and the button that sends it. */
+    private tells(label: string, hint: string, act: string, value: string, message: (typed: string) => PageMessage): HTMLElement {
+        const { texts } = this, field = Object.assign(made("input", ""), { ...PLAIN, value })
+        const note = made("p", "note", phrase(texts, hint))
+        note.id = `op-${act.replace(".", "-")}-hint`
+        field.setAttribute("aria-describedby", `${note.id} ${this.refusal.id}`)
+        const button = Object.assign(made("button", "", phrase(texts, act)), { type: "submit" })
+        const form = made("form", "asks", made("div", "typed", made("label", "", made("span", "", label), field), button), note)
+        form.noValidate = true
+        form.addEventListener("submit", event => {
+            event.preventDefault()
+            if (button.disabled) return
+            this.acts = button
+            this.field = field
+            button.disabled = true
+            this.send(message(field.value.trim()))
+        })
+        return form
     }
 
     /** Somebody of the same name is away, whose place one can have back. */
@@ -124,7 +155,7 @@ export class ClassSheet {
     /** A field that must be filled in, and the button that uses it; `use` returns what is wrong with what was typed. */
     private asks(label: string, hint: string, act: string, use: (typed: string) => string | void): HTMLElement {
         const { texts, refusal } = this
-        const field = (this.field = Object.assign(made("input", ""), { type: "text", autocomplete: "off", autocapitalize: "off", spellcheck: false, maxLength: LONGEST }))
+        const field = (this.field = Object.assign(made("input", ""), PLAIN))
         const note = made("p", "note", phrase(texts, hint))
         note.id = "op-seat-hint"
         field.setAttribute("aria-required", "true")

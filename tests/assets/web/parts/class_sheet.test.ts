@@ -4,7 +4,7 @@ import { test } from "node:test"
 import type { ClassMessage, PageMessage } from "../../../../assets/web/channel/messages"
 import { ClassSheet } from "../../../../assets/web/parts/class_sheet"
 
-const NONE = { code: "", name: "", longest: 0, stored: "", privacy: "", away: "", asked: false }
+const NONE = { code: "", name: "", longest: 0, stored: "", privacy: "", away: "", asked: false, asks: "", identification: "", linked: "" } as const
 const GUEST: ClassMessage = { ...NONE, is: "class", place: "guest", code: "ABC234", longest: 5, stored: "all of it", privacy: "https://x.example/p" }
 const MEMBER: ClassMessage = { ...GUEST, place: "member", name: "<img src=x>" }
 const ELSEWHERE: ClassMessage = { ...NONE, is: "class", place: "elsewhere" }
@@ -107,4 +107,30 @@ test("somebody of the same name who is away is offered once, and asked about", (
     assert.ok([...body.querySelectorAll("button")].every(each => each.textContent !== "class.ask_place"))
     card.show(MEMBER)
     assert.doesNotMatch(body.textContent, /class.is_it_you|class.place_asked/)
+})
+
+test("a member is asked only for what the teacher asks for, and a word may be given and taken back", () => {
+    const silent = opened(MEMBER)
+    assert.deepEqual([...silent.body.querySelectorAll("form")].map(each => each.querySelector("label")!.textContent), ["class.word"])
+    const { card, body, sent, refusal } = opened({ ...MEMBER, asks: "ID number (your teacher sees this)", identification: "<b>12" })
+    const [told, word] = [...body.querySelectorAll("form")]
+    const field = told!.querySelector("input")!
+    assert.deepEqual([told!.querySelector("label")!.textContent, field.value], ["ID number (your teacher sees this)", "<b>12"])
+    const submit = (form: HTMLFormElement, typed: string) => {
+        form.querySelector("input")!.value = typed
+        form.dispatchEvent(new Event("submit", { cancelable: true }))
+    }
+    submit(told!, " 34 ")
+    submit(told!, "56") // one at a time
+    card.hear({ is: "seat", of: "identify", why: "", address: "" })
+    submit(told!, "")
+    submit(word!, "cactus")
+    assert.deepEqual(sent, [{ is: "identify", typed: "34" }, { is: "identify", typed: "" }, { is: "link", word: "cactus" }])
+    card.hear({ is: "seat", of: "link", why: "too short", address: "" })
+    assert.deepEqual([refusal(), word!.querySelector("input")!.ariaInvalid, field.ariaInvalid], ["too short", "true", null])
+    card.show({ ...MEMBER, linked: "own" })
+    assert.match(body.textContent, /class\.word_own/)
+    card.show({ ...MEMBER, linked: "shared" })
+    assert.match(body.querySelector<HTMLDetailsElement>("details.word")!.textContent, /class\.word_shared/)
+    assert.equal(body.querySelector<HTMLDetailsElement>("details.word")!.open, true)
 })
