@@ -47,6 +47,8 @@ def lacks(
 def _step_lacks(step: Step, after: Step | None) -> Iterator[str]:
     if step.kind == "predict" and not any(isinstance(b, Choice | Sketch) for b in step.blocks):
         yield " has no prediction"
+    if step.kind == "predict" and _told_late(step):
+        yield ": text stands after its prediction; what it says is needed before"
     if step.kind == "predict" and (after is None or after.kind != "run"):
         yield ": a `run` step must follow"
     elif step.kind == "predict" and after is not None and after.optional != step.optional:
@@ -59,6 +61,15 @@ def _step_lacks(step: Step, after: Step | None) -> Iterator[str]:
         yield " has no question: a quiz, number, open or derivation block"
     if step.kind == "task" and not any(isinstance(b, Task) for b in step.blocks):
         yield " has no task"
+
+
+def _told_late(step: Step) -> bool:
+    """Whether text, other than folds and what depends on an answer, stands after a prediction."""
+    asked = [at for at, block in enumerate(step.blocks) if isinstance(block, Choice | Sketch)]
+    return any(
+        isinstance(block, Text) and not block.when and FOLDED.sub("", block.html).strip()
+        for block in step.blocks[min(asked, default=len(step.blocks)) :]
+    )
 
 
 Asked = Quiz | NumberQuestion | OpenQuestion | Derivation

@@ -109,8 +109,6 @@ def step_html(
         plays: whether the page can play the step's script.
         lacking: what the page lacks here, in words; may be empty.
     """
-    if lesson.steps[index].kind == "predict":  # what to draw is seen together with the board
-        parts = sorted(parts, key=lambda part: part.kind != "sketch")
     return part_of_page(
         "step/step.html",
         lesson=lesson,

@@ -152,6 +152,15 @@ def test_a_backslash_that_is_one_is_read(tmp_path: Path, text: str) -> None:
     read_lesson(write_lesson(tmp_path, LESSON.replace('"Draw the distance."', text)))
 
 
+def test_a_prediction_stands_after_what_it_needs(tmp_path: Path) -> None:
+    late = LESSON.replace("\n# run: And now", "\n```fold More\nIt is long.\n```\n\n# run: And now")
+    read_lesson(write_lesson(tmp_path, late))
+    late = late.replace("\n# run: And now", "\nIt is held at 3 s.\n\n# run: And now")
+    ((line, words),) = faults(write_lesson(tmp_path, late))
+    assert "text stands after its prediction" in words
+    assert late.split("\n")[line - 1] == "# predict: Before"
+
+
 def test_what_a_prediction_hides_is_not_told_before_it_except_in_a_fold(tmp_path: Path) -> None:
     text = LESSON.replace('"Draw the distance."', '"D"\nhidden = ["47 mm"]')
     text = text.replace("# run: And now", "# run: And now\n\nIt was 47 mm.")

@@ -113,6 +113,17 @@ def test_every_task_says_why_it_worked_and_only_then() -> None:
             assert task.passed and ('class="after"' in page) == done
 
 
+def test_a_prediction_is_shown_after_the_text_before_it() -> None:
+    words = Words("en")
+    for lesson in ENGLISH:
+        for index, step in enumerate(lesson.steps):
+            if step.kind == "predict":
+                parts = [part_of(lesson, index, at, words) for at in range(len(step.blocks))]
+                page = step_html(lesson, index, parts, words)
+                places = [page.index(f'data-block="{at}"') for at in range(len(parts))]
+                assert places == sorted(places), step.title
+
+
 def test_references_are_where_the_lessons_are() -> None:
     for lesson in ENGLISH:
         assert Path(BUILT_IN / lesson.name / REFERENCE).is_file()
