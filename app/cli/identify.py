@@ -33,6 +33,9 @@ class IdentifyCommand:
     unit: Repeated = ()
     """Unit of a column, as q1=deg, or its factor to SI units, as tau1=0.085; repeat for more. By
     default s, rad, N m and N."""
+    links: bool = False
+    """Print the base parameters of each link, too: the combinations of its mass, first moments and
+    inertias that this log tells. For a robot that is a chain of links, as from a file."""
     validate: Repeated = ()
     """Another file of the same form: print how much of its torque the values do not explain;
     repeat for more."""
@@ -66,7 +69,7 @@ class IdentifyCommand:
         columns = assignments(self.column, "--column")
         units = assignments(self.unit, "--unit")
         others = [user_file(Path(each)) for each in self.validate]
-        found = identify_file(file, entry, self.law, columns, units, others)
+        found = identify_file(file, entry, self.law, columns, units, others, links=self.links)
         if self.plot:
             with whole_file(self.plot) as path:
                 save(residual_figure(found), path)

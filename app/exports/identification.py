@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from itertools import groupby
 from typing import Any
 
 import numpy as np
@@ -10,6 +12,7 @@ from onpath.app.exports.figures import ShownFigure
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.closed_loop.trajectory import header
 from onpath.models.studies.exciting_motion import PlannedMotion
+from onpath.models.studies.link_estimate import LinkEstimate, LinkParameter
 from onpath.models.studies.log_identification import FileEstimate
 from onpath.models.studies.parameter_estimate import BaseParameter
 from onpath.models.systems.robots import RobotEntry
@@ -33,6 +36,7 @@ def identification_data(found: FileEstimate) -> dict[str, Any]:
         "unexplained_in": {name: float(f"{x:.3g}") for name, x in found.others.items()},
         "torque_late_s": None if late is None else float(f"{late.value:.3g}"),
         "torque_late_interval_s": None if late is None else _interval(late),
+        "links": None if found.links is None else [_link(p) for p in found.links.parameters],
         SETTINGS: found.settings,
         "motion": None
         if motion is None
@@ -41,6 +45,16 @@ def identification_data(found: FileEstimate) -> dict[str, Any]:
             "tells": list(motion.identified),
             "not": list(motion.left),
         },
+    }
+
+
+def _link(each: LinkParameter) -> dict[str, Any]:
+    return {
+        "link": each.link,
+        "body": each.body,
+        "sum": {name: float(f"{share:.6g}") for name, share in each.terms},
+        "told": None if each.told is None else _entry(each.told),
+        "in_the_file": float(f"{each.stated:.9g}"),
     }
 
 
@@ -65,7 +79,44 @@ def identification_text(found: FileEstimate) -> str:
     """The result as text."""
     title, *others = remarks(found)
     rows = [f"{name:24s} {value:>12s}  ± {half}" for name, value, half in parameter_rows(found)]
-    return "\n  ".join([title, *rows, *others])
+    links = [] if found.links is None else link_lines(found.links)
+    return "\n  ".join([title, *rows, *others, *links])
+
+
+def link_lines(links: LinkEstimate) -> list[str]:
+    """The base parameters of each link; one that is a sum is named after its first term, with R."""
+    names = {p.name: p.name + "R" * (len(p.terms) > 1) for p in links.parameters}
+    lines = [
+        "by link, what any motion could tell of masses m, first moments mx, my, mz and inertias"
+        " Ixx, ..., about the joint, whose axis is z, of motors' inertias Ia and viscous friction"
+        f" b, beside the robot's file; {100 * links.unexplained:.2g} % of the torque is not"
+        " explained by these:"
+    ]
+    for number, group in groupby(links.parameters, key=lambda p: p.link):
+        members = [*group]
+        lines.append(f"link {number} ({members[0].body})")
+        lines += [f"  {names[p.name]:8s} {_told_of(p, names)}" for p in members]
+        sums = [p for p in members if len(p.terms) > 1]
+        lines += [f"  {names[p.name]} = {_written(p.terms)}" for p in sums]
+    return lines
+
+
+def _told_of(parameter: LinkParameter, names: Mapping[str, str]) -> str:
+    told = parameter.told
+    if told is None:
+        return "not told by this log"
+    others = [(names.get(name, name), share) for name, share in told.others]
+    beside = f"   with {_written(others)}" if others else ""
+    return f"{told.value:>12.4g}  ± {_half(told):8s} file {parameter.stated:.4g}{beside}"
+
+
+def _written(terms: Sequence[tuple[str, float]]) -> str:
+    """For instance "Izz1 + Ia1 - 0.22 mz3"."""
+    parts = list[str]()
+    for name, share in terms:
+        sign, size = "-" if share < 0 else "+", abs(share)
+        parts.append(f"{sign} {name}" if abs(size - 1) < 1e-9 else f"{sign} {size:.3g} {name}")
+    return " ".join(parts).removeprefix("+ ")
 
 
 def parameter_rows(found: FileEstimate) -> list[tuple[str, str, str]]:

@@ -11,6 +11,7 @@ from onpath.app.common.atomic_file import check_writable, whole_file
 from onpath.app.common.user_files import user_file
 from onpath.app.notebook.run import written
 from onpath.app.notebook.simulate import entry_named
+from onpath.models.studies.link_estimate import LinkParameter
 from onpath.models.studies.log_identification import FileEstimate, identify_file
 from onpath.models.systems.catalogue import ROBOTS, RobotEntry, robot_named
 
@@ -62,6 +63,11 @@ class IdentificationResult:
         """Share of the torque in each file of `validate` that the values do not explain."""
         return dict(self.found.others)
 
+    @property
+    def links(self) -> tuple[LinkParameter, ...]:
+        """The base parameters of the links, from the base to the tip, if `links` was asked for."""
+        return () if self.found.links is None else self.found.links.parameters
+
     def plot(self, file: str | Path | None = None) -> Figure:
         """Draw the torques and their residuals.
 
@@ -112,6 +118,7 @@ def identify(
     units: Mapping[str, str | float] | None = None,
     law: str = "",
     validate: str | Path | Sequence[str | Path] = (),
+    links: bool = False,
 ) -> IdentificationResult:
     """Estimate a robot's parameters from the log of a real arm, or a CSV file of OnPath.
 
@@ -132,6 +139,8 @@ def identify(
         law: use only the rows of this law, if there is a column `law`.
         validate: another file of the same form, or several: the result says how much of their
             torque the values do not explain.
+        links: whether to estimate the base parameters of each link, too; for a robot that is a
+            chain of links, as from a file.
 
     Raises:
         ValueError: the file, a name or a unit is refused; the message names line and column. Or
@@ -152,4 +161,5 @@ def identify(
     entry, path = entry_named(robot), user_file(file)
     several = [validate] if isinstance(validate, str | Path) else validate
     others = [user_file(each) for each in several]
-    return IdentificationResult(identify_file(path, entry, law, columns, units, others))
+    found = identify_file(path, entry, law, columns, units, others, links=links)
+    return IdentificationResult(found)

@@ -1638,6 +1638,7 @@ error-record_of_one_row = Zeile { $line }: eine einzelne Zeile eines Gesetzes is
 error-record_times = Zeile { $line }, Spalte { $column }: Die Zeiten wachsen nicht von Zeile zu Zeile: Sie sind vielleicht gerundet; speichere die Datei mit mehr Stellen
 error-record_gap = Zeile { $line }, Spalte { $column }: { $step } s vergehen ohne eine Zeile, erlaubt sind { $most } s: Teile die Datei dort
 error-record_coarse = Spalte { $column }: alle { $step } ms kommt eine Zeile, erlaubt sind höchstens { $most } ms dazwischen
+error-no_links = { $robot } ist keine Kette von Gliedern, deren Massen sich trennen ließen: Was die Bewegung verrät, sind die gedruckten Parameter
 error-log_columns = Gib an, in welchen Spalten diese Größen stehen: { $names }
 error-log_factor = der Faktor von { $name } ist { $value }: er darf nicht 0 sein, und seine Größe muss von 1e-12 bis 1e12 gehen
 

@@ -1221,6 +1221,7 @@ error-record_of_one_row = line { $line }: a single row of a law is not a motion
 error-record_times = line { $line }, column { $column }: the times do not grow from row to row: they may have been rounded; save the file again with more digits
 error-record_gap = line { $line }, column { $column }: { $step } s pass without a row, and at most { $most } s may: cut the file there
 error-record_coarse = column { $column }: a row comes every { $step } ms, and at most { $most } ms may pass between them
+error-no_links = { $robot } is not a chain of links whose masses could be told apart: what its motion tells are the parameters that are printed
 error-log_columns = say which columns are { $names }
 error-log_factor = the factor of { $name } is { $value }: it must not be 0, and its size from 1e-12 to 1e12
 

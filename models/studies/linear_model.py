@@ -7,7 +7,7 @@ window w of finite length and integrated by parts, so that no acceleration is ne
     (-<w', P> + <w, R>) π = <w, B u + J_h^T F> + <w', p_0> - <w, r_0>,   <w, x> = ∫ w(t) x(t) dt.
 
 Dry friction is c sign(r) with the rate r of a motor; where that is slow, nothing is assumed of it
-(see slow_friction.py).
+(see slow_friction.py), nor of a motor that hardly turns at all.
 
 Source: Khalil and Dombre, Modeling, Identification and Control of Robots, 12.3 and 12.4.
 """
@@ -37,6 +37,7 @@ from onpath.models.systems.system import MechanicalSystem
 
 SLOW, SLOW_SHARE = 0.2, 0.25  # [rad/s] or [m/s], and share of a motor's largest rate
 TURNED = 0.02  # [rad/s] or [m/s], width of the smooth sign of dry friction
+WIDTHS = (0.0, 0.05)  # likewise, narrowest and widest that it may have
 LATEST = 0.1  # [s], largest delay or lead of logged torques
 
 
@@ -114,6 +115,7 @@ class RecordEquations:
         dt: time step of the record, [s].
         columns: regressor, shape (windows, n, k + m); the last m are for dry friction.
         known: what the right-hand side has besides the motors' torques, (windows, n).
+        other_dry: the last m columns with each of `WIDTHS`, (len(WIDTHS), windows, n, m).
         motors: column of B for each motor, (rows, n, m).
         u: logged torques, (rows, m).
         starts: first row of each window. All torques are known there, however late they are.
@@ -123,6 +125,7 @@ class RecordEquations:
     dt: float
     columns: Array
     known: Array
+    other_dry: Array
     motors: Array
     u: Array
     starts: NDArray[np.int_]
@@ -160,26 +163,32 @@ def record_equations(
     slopes = terms.full().reshape(n, rows, 2 * size).swapaxes(0, 1)
     offsets = offset.full().reshape(n, rows, 2).swapaxes(0, 1)
     plant, none = np.tile(geometry[:, None], rows), 0 * record.force.T
+    middle = _middles(record.q)  # torques and forces are constant over each step
 
     def effort(u: Array, force: Array) -> Array:
-        return np.asarray(model.effort.map(rows)(record.q.T, u, force, plant).full().T, dtype=float)
+        return np.asarray(model.effort.map(rows)(middle.T, u, force, plant).full().T, dtype=float)
 
     columns = _filtered(slopes[..., size:], weight, dt) - _filtered(slopes[..., :size], rate, dt)
     known = _filtered(effort(0 * record.u.T, record.force.T), held, dt)
     known += _filtered(offsets[..., 0], rate, dt) - _filtered(offsets[..., 1], weight, dt)
     motors = np.stack([effort(np.tile(u[:, None], rows), none) for u in np.eye(system.m)], axis=2)
-    rates = np.einsum("rnm,rn->rm", motors, record.v)
-    dry = motors * (rates / np.sqrt(rates**2 + TURNED**2))[:, None]
-    columns = np.concatenate([columns, _filtered(dry, held, dt)], axis=2)
+    rates = np.einsum("rnm,rn->rm", motors, _middles(record.v))
+    dry, *others = (
+        _filtered(motors * _smooth_sign(rates, width)[:, None], held, dt)
+        for width in (TURNED, *WIDTHS)
+    )
+    columns = np.concatenate([columns, dry], axis=2)
     starts = np.arange(len(columns)) * _stride(dt)
     reach = (LATEST + BUMP / FEWEST) / dt
     kept = (starts >= reach) & (starts + len(held) + reach <= rows)
     bounds = np.minimum(SLOW, SLOW_SHARE * np.abs(rates).max(axis=0))
     slow = slow_rows(rates, bounds, dt)
+    slow[:, np.ptp(dt * np.cumsum(rates, axis=0), axis=0) < LEAST_MOTION] = True  # it rests
     return RecordEquations(
         dt=dt,
         columns=columns[kept],
         known=known[kept],
+        other_dry=np.stack(others)[:, kept],
         motors=motors,
         u=record.u,
         starts=starts[kept],
@@ -190,6 +199,11 @@ def record_equations(
 def columns_of(parts: list[RecordEquations]) -> Array:
     """Regressor of all records, (windows, n, k + m)."""
     return np.concatenate([part.columns for part in parts])
+
+
+def dry_columns_of(parts: list[RecordEquations]) -> Array:
+    """`RecordEquations.other_dry` of all records, (len(WIDTHS), windows, n, m)."""
+    return np.concatenate([part.other_dry for part in parts], axis=1)
 
 
 def torque_of(parts: list[RecordEquations], late: float) -> Array:
@@ -203,6 +217,17 @@ def without_slow(parts: list[RecordEquations], values: Array) -> Array:
     return np.concatenate(
         [part.slow.removed(x) if part.slow else x for part, x in zip(parts, each, strict=True)]
     )
+
+
+def _middles(values: Array) -> Array:
+    """Values in the middle of each time step; the last ones are those of the last row."""
+    return np.concatenate([(values[1:] + values[:-1]) / 2, values[-1:]])
+
+
+def _smooth_sign(rates: Array, width: float) -> Array:
+    """r / sqrt(r² + width²), and 0 at 0."""
+    size = np.hypot(rates, width)
+    return np.divide(rates, size, out=np.zeros_like(rates), where=size > 0)
 
 
 def _filtered(signal: Array, kernel: Array, dt: float) -> Array:

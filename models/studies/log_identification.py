@@ -12,6 +12,7 @@ from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
 from onpath.models.studies.exciting_motion import ExcitingMotion, exciting_motion
 from onpath.models.studies.linear_model import MotionRecord, linear_model
+from onpath.models.studies.link_estimate import LinkEstimate, link_estimate
 from onpath.models.studies.parameter_estimate import Estimate, estimate, unexplained_of
 from onpath.models.studies.record_file import LogColumns, log_columns, read_records
 from onpath.models.systems.parameter_specs import unknown_name
@@ -33,6 +34,7 @@ class FileEstimate:
         centre: mean of the coordinates, (n,).
         fastest: largest rate of each coordinate, (n,).
         others: share of the torque that the estimate does not explain in other files, by name.
+        links: what the file tells of the robot's links, if that was asked for.
     """
 
     robot: str
@@ -45,6 +47,7 @@ class FileEstimate:
     centre: Array
     fastest: Array
     others: Mapping[str, float]
+    links: LinkEstimate | None = None
 
     @property
     def settings(self) -> dict[str, float]:
@@ -69,6 +72,8 @@ def identify_file(
     columns: Mapping[str, str | int] | None = None,
     units: Mapping[str, str | float] | None = None,
     others: Sequence[Path] = (),
+    *,
+    links: bool = False,
 ) -> FileEstimate:
     """Estimate a robot's parameters.
 
@@ -77,6 +82,7 @@ def identify_file(
         law: use only the rows of this law; "": all.
         columns, units: see `log_columns`; without either it is a file of OnPath.
         others: files of the same form, whose torques the estimate is to explain, too.
+        links: whether to estimate the base parameters of each link, too.
 
     Raises:
         ValueError: the robot is not suitable, the file is refused, or its motion is too short.
@@ -84,6 +90,8 @@ def identify_file(
     """
     robot = entry.make(entry.parameters())
     linear_model(robot.system)  # refuse an unsuitable robot before reading
+    if links and entry.source is None:
+        raise CodedError("error.no_links", robot=entry.name)
     log = log_columns(robot, columns or {}, units or {}) if columns or units else None
     laws, used = _records(path, robot, log, law)
     plant = robot.plant(entry.parameters())
@@ -106,6 +114,7 @@ def identify_file(
             )
             for each in others
         },
+        links=link_estimate(entry.source, used) if links and entry.source else None,
     )
 
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -69,17 +70,16 @@ def thinned(motion: LoggedMotion, most: int, least_step: float) -> LoggedMotion:
     count = int(rows * motion.dt / step + 1e-9)
     if step == motion.dt or count < 2:
         return motion
-    ends = motion.dt * np.arange(rows + 1)
-    starts = step * np.arange(count)
+    ends: Array = motion.dt * np.arange(rows + 1, dtype=float)
+    edges: Array = step * np.arange(count + 1, dtype=float)
 
     def at(values: Array) -> Array:
-        return np.stack([np.interp(starts, ends[:-1], each) for each in values.T], axis=1)
+        return _columns([np.interp(edges[:-1], ends[:-1], each) for each in values.T])
 
     def means(values: Array) -> Array:
         sums = np.concatenate([np.zeros((1, values.shape[1])), np.cumsum(values, axis=0)])
-        edges = np.append(starts, count * step)
-        whole = [np.interp(edges, ends, motion.dt * each) for each in sums.T]
-        return np.diff(np.stack(whole, axis=1), axis=0) / step
+        whole = _columns([np.interp(edges, ends, motion.dt * each) for each in sums.T])
+        return np.asarray((whole[1:] - whole[:-1]) / step, dtype=float)
 
     return LoggedMotion(
         dt=step,
@@ -88,6 +88,10 @@ def thinned(motion: LoggedMotion, most: int, least_step: float) -> LoggedMotion:
         u=means(motion.u),
         force=means(motion.force),
     )
+
+
+def _columns(columns: Sequence[Any]) -> Array:
+    return np.array(columns, dtype=float).T
 
 
 def along_path(

@@ -29,6 +29,7 @@ from onpath.models.studies.linear_model import (
     MotionRecord,
     RecordEquations,
     columns_of,
+    dry_columns_of,
     linear_model,
     record_equations,
     torque_of,
@@ -54,7 +55,8 @@ class BaseParameter:
         value: estimate.
         error: its standard error.
         low, high: interval that contains the true value with a probability of 95 %, whatever the
-            friction of slow motors; infinite if the record is too short for one.
+            friction of slow motors, and however wide the transition of dry friction about
+            standstill; infinite if the record is too short for one.
         others: (name, multiple) of each further parameter of the sum.
     """
 
@@ -160,7 +162,9 @@ def _delay(parts: list[RecordEquations]) -> float:
     """The delay of the logged torques with which the model explains most of them, [s]."""
     from scipy.optimize import minimize_scalar  # slow to import
 
-    _, scaled, _ = _scaled(parts, range(parts[0].columns.shape[2]))
+    moved, scaled, _ = _scaled(parts, range(parts[0].columns.shape[2]))
+    if not moved:
+        raise ValueError("the robot hardly moves")
     basis = np.linalg.qr(scaled.reshape(-1, scaled.shape[-1]))[0]
 
     def unexplained(late: float) -> float:
@@ -259,6 +263,7 @@ def _solved(names: tuple[str, ...], parts: list[RecordEquations], late: float) -
     unknown = sum(part.slow.torques for part in parts if part.slow)
     errors = _errors(regressor, residual, unknown)
     wide = errors * _quantile(regressor, unknown)
+    wide += _change_by_friction(parts, [moved[i] for i in chosen], scale[chosen], regressor, torque)
 
     def parameter(i: int, name: str, size: float, sums: Sums = (), shift: float = 0.0):
         value = float(values[i]) / size + shift
@@ -282,6 +287,27 @@ def _solved(names: tuple[str, ...], parts: list[RecordEquations], late: float) -
         torque=torque,
         residual=residual,
     )
+
+
+def _change_by_friction(
+    parts: list[RecordEquations], places: list[int], scale: Array, regressor: Array, torque: Array
+) -> Array:
+    """How much another width of the smooth sign of dry friction changes each estimate at most.
+
+    Args:
+        places: of the regressor's first columns among those of the equations.
+        scale: by which these have been divided.
+    """
+    first = parts[0].columns.shape[2] - parts[0].motors.shape[2]
+    dry = [(i, place - first) for i, place in enumerate(places) if place >= first]
+    values, _ = least_squares(regressor, torque)
+    most = np.zeros(len(values))
+    for columns in dry_columns_of(parts) if dry else ():
+        other, own = regressor.copy(), without_slow(parts, columns)
+        for i, motor in dry:
+            other[..., i] = own[..., motor] / scale[i]
+        most = np.maximum(most, np.abs(least_squares(other, torque)[0] - values))
+    return most
 
 
 def _change(parts: list[RecordEquations], late: float) -> Array:

@@ -24,7 +24,7 @@ import csv
 import io
 import re
 from array import array
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Generator, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from itertools import chain
@@ -101,7 +101,7 @@ def column_names(path: Path) -> tuple[str, ...]:
 
 
 @contextmanager
-def _opened(path: Path) -> Iterator[io.TextIOWrapper]:
+def _opened(path: Path) -> Generator[io.TextIOWrapper, None, None]:
     """The text of a file; undecodable bytes are replaced, and refused if they matter."""
     with path.open("rb") as raw:
         encoding = encoding_of(raw.peek(1))

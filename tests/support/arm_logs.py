@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -21,6 +21,7 @@ from onpath.models.systems.catalogue import ROBOTS
 
 DRY = 0.04  # [N m], dry friction of every joint
 STUCK = 0.05  # [rad], range of a motion that counts as none
+WHEEL = 0.1  # [m], radius of the wheel that moves a slide
 
 
 @dataclass(frozen=True)
@@ -32,7 +33,7 @@ class Logger:
         uneven: share of the mean step by which times scatter.
         late: delay of the torques, [s].
         angle_noise, torque_noise: standard deviations, [rad] and [N m].
-        counts: of the encoders per turn; 0: exact.
+        counts: of the encoders per turn; 0: exact. A slide is moved by a wheel.
     """
 
     rate: float = 500.0
@@ -42,15 +43,22 @@ class Logger:
     torque_noise: float = 0.01
     counts: int = 0
 
-    def rows(self, motion: Trajectory, seed: int) -> tuple[Array, Array, Array]:
-        """Times [s], angles [rad] and torques [N m] of a free motion."""
+    def rows(
+        self, motion: Trajectory, seed: int, slides: Sequence[bool] = ()
+    ) -> tuple[Array, Array, Array]:
+        """Times [s], coordinates [rad, m] and torques [N m] of a free motion.
+
+        Args:
+            slides: which coordinates are lengths; none by default.
+        """
+        wheel = np.where(slides, WHEEL, 1.0) if len(slides) else 1.0
         rng = np.random.default_rng(seed)
         t = np.arange(0.15, motion.t[-1] - 0.15, 1 / self.rate)
         t = t + self.uneven / self.rate * rng.uniform(-0.5, 0.5, len(t))
         q = CubicSpline(motion.t, motion.fields["q"])(t)
-        q += self.angle_noise * rng.normal(size=q.shape)
+        q += wheel * self.angle_noise * rng.normal(size=q.shape)
         if self.counts:
-            step = 2 * np.pi / self.counts
+            step = wheel * 2 * np.pi / self.counts
             q = step * np.floor(q / step + 0.5)
         u, edges = motion.fields["u"], np.append(motion.t, motion.t[-1] + 1e-3)
         whole = 1e-3 * np.concatenate([np.zeros((1, u.shape[1])), np.cumsum(u, axis=0)])
@@ -116,7 +124,8 @@ def random_log(robot: str, seed: int, sticks: bool = True) -> TrueLog | None:
     plant = chosen.robot().plant(chosen.parameters).tolist()
     true = dict(zip(system.parameter_names, plant, strict=True))
     true |= {f"c{i + 1}": dry for i in range(system.m)} | {DELAY: logger.late}
-    return TrueLog(logger.rows(motion, seed), true)
+    slides = [name.endswith("_m") for name in system.coordinate_names]
+    return TrueLog(logger.rows(motion, seed, slides), true)
 
 
 COLUMNS = {"t": "Zeit [ms]", "q1": "Achse 1 [°]", "q2": "Achse 2 [°]"}
