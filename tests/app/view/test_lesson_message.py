@@ -154,7 +154,9 @@ def places(kind: type) -> list[tuple[str, int, int]]:
 
 @pytest.mark.parametrize(("name", "index", "place"), places(Quiz))
 def test_a_quiz_is_judged_once_it_is_answered(lab: Lab, name: str, index: int, place: int) -> None:
-    """What is right is told with a right or a second answer, the reply to a wrong one at once."""
+    """What is right is told with a right or a second answer, the reply to a wrong one at once. Where
+    something else is asked second, another choice tells nothing.
+    """
     do(lab, c.SetLanguage("en"))
     key = f"{index}.{place}"
     at(lab, name, index)
@@ -164,7 +166,7 @@ def test_a_quiz_is_judged_once_it_is_answered(lab: Lab, name: str, index: int, p
         at(lab, name, index, quiz={key: option}, attempt=1 + twice)
         message = told(lab)
         data = message["steps"][index]["blocks"][place]
-        is_told = block.options[option].right or twice
+        is_told = block.options[option].right or (twice and block.second is None)
         assert ("right" in data) == is_told and (not is_told or block.options[data["right"]].right)
         assert given_in(message)[key]["answer"] == {"option": option}
         answers = re.findall(r'data-answer="(.)"', message["sections"][str(index)])
@@ -239,7 +241,8 @@ def test_what_is_right_is_told_by_the_run_that_shows_it(
         message = told(lab)
         data = message["steps"][index]["blocks"][place]
         section = message["sections"][str(index)]
-        assert ("right" in data) == (seen and isinstance(block, Choice))
+        tells = isinstance(block, Choice) and (block.options[1].right or block.second is None)
+        assert ("right" in data) == (seen and tells)  # else after the second try
         assert ("data-answer" in section) == (seen and isinstance(block, Choice))
         kept = message["notes"]
         assert given_in(message)[str(index)]["answer"]["option" if answer.option else "times"]
