@@ -154,8 +154,9 @@ def places(kind: type) -> list[tuple[str, int, int]]:
 
 @pytest.mark.parametrize(("name", "index", "place"), places(Quiz))
 def test_a_quiz_is_judged_once_it_is_answered(lab: Lab, name: str, index: int, place: int) -> None:
-    """What is right is told with a right or a second answer, the reply to a wrong one at once. Where
-    something else is asked second, another choice tells nothing.
+    """What is right is told with a right or a second answer, the reply to a wrong one at once.
+
+    Where something else is asked second, another choice tells nothing.
     """
     do(lab, c.SetLanguage("en"))
     key = f"{index}.{place}"
