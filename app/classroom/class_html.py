@@ -6,11 +6,12 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import ceil
+from typing import Literal
 
 from onpath.app.classroom.classroom import Member
 from onpath.app.classroom.results import Asked, Distribution, tasks_passed
 from onpath.app.classroom.sketches_html import ALL, Picks, SketchRound, sketches_view
-from onpath.app.common.palette import AMBER, AZURE, GREEN, GREY, VIOLET
+from onpath.app.common.palette import AMBER, AZURE, GREEN, GREY, VIOLET, Colour
 from onpath.app.common.qr_code import qr_code
 from onpath.app.common.templates import render
 from onpath.app.viser_adapter.addresses import REMOTE, WALL
@@ -220,29 +221,40 @@ def hidden_view(block: Asked, found: Distribution | None, words: Words, large: b
     return choices_view(block, (), revealed=False, words=words, large=large, facts=facts)
 
 
-DOTS = {
-    "class.dots_here": GREY,
-    "class.dots_answered": AZURE,
-    "class.dots_right": GREEN,
-    "class.dots_changed": VIOLET,
+State = Literal["here", "answered", "right", "changed"]
+"""What a student who is here has done with what the class is asked."""
+DOTS: dict[State, tuple[Colour, str, str, str]] = {
+    "here": (GREY, "○", "class.dots_here", "class.cell_here"),
+    "answered": (AZURE, "●", "class.dots_answered", "class.cell_answered"),
+    "right": (GREEN, "✓", "class.dots_right", "class.cell_right"),
+    "changed": (VIOLET, "↻", "class.dots_changed", "class.cell_changed"),
 }
-"""Colours of students' dots, by the message that says how many there are."""
+"""Colour and sign of each state, and the messages that say how many are in it, or that one is."""
 
 
-def dots_view(states: Sequence[str], words: Words) -> str:
-    """A dot for each student who is here, and how many are in each state.
-
-    Args:
-        states: keys of `DOTS`.
-    """
+def dots_view(states: Sequence[State], words: Words) -> str:
+    """A dot for each student who is here, and how many are in each state."""
     order = list(DOTS)
-    shown = [(state, DOTS[state].hex) for state in sorted(states, key=order.index, reverse=True)]
+    shown = [(state, DOTS[state][0].hex) for state in sorted(states, key=order.index, reverse=True)]
     counts = [
-        (DOTS[state].hex, words(state, count=states.count(state)))
-        for state in order
+        (colour.hex, words(many, count=states.count(state)))
+        for state, (colour, _, many, _) in DOTS.items()
         if state in states
     ]
     return render("class/dots.html", dots=shown, counts=counts)
+
+
+def grid_view(here: Sequence[tuple[Member, State]], words: Words) -> str:
+    """A cell with number and name for each student who is here; pressed, it sets who is followed.
+
+    On a phone, a cell is as large as a thumb needs.
+    """
+    cells = [
+        (each.number, each.name, colour.hex, sign, words(one))
+        for each, state in here
+        for colour, sign, _, one in (DOTS[state],)
+    ]
+    return render("class/grid.html", cells=cells) if cells else ""
 
 
 def moves_view(

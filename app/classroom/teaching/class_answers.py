@@ -9,7 +9,7 @@ from math import ceil, inf
 from typing import Protocol
 
 from onpath.app.classroom import class_html as page
-from onpath.app.classroom.classroom import MOST_MEMBERS, Classroom, Display
+from onpath.app.classroom.classroom import MOST_MEMBERS, Classroom, Display, Member
 from onpath.app.classroom.concept_test_results import gain_view, item_distribution, question_at
 from onpath.app.classroom.results import (
     Asked,
@@ -47,6 +47,7 @@ NOTHING = Notes()
 class Students:
     """The members of a class who count: their progress, and whether each is here."""
 
+    members: list[Member]
     progress: list[Progress]
     here: list[bool]
 
@@ -137,24 +138,34 @@ class ClassAnswers:
     def _students(self) -> Students:
         members = list(self._teaching.classroom.present().values())
         return Students(
+            members,
             [of_today(self._course, member.progress) for member in members],
             [member.connected for member in members],
         )
 
     def dots(self) -> str:
-        """Who is here, as dots without names: whether each has answered what the step asks first,
-        is right, or has changed the answer after a discussion."""
-        asked, states = self._first_question(), list[str]()
-        for first, second in self._answers_here(asked):
+        """Who is here, as dots without names; see `grid`."""
+        return page.dots_view(self._states(self._students()), self._words)
+
+    def grid(self) -> str:
+        """Who is here, by name: whether each has answered what the step asks first, is right, or
+        has changed the answer after a discussion."""
+        students = self._students()
+        here = [each for each in students.members if each.connected]
+        return page.grid_view(list(zip(here, self._states(students), strict=True)), self._words)
+
+    def _states(self, students: Students) -> list[page.State]:
+        """What each student who is here has done, in order of joining."""
+        asked, states = self._first_question(), list[page.State]()
+        for first, second in self._answers_here(asked, students):
             last = second or first
             if asked is None or last is None or last.is_skipped:
-                states.append("class.dots_here")
+                states.append("here")
             elif second is not None and first is not None and not is_same(first, second):
-                states.append("class.dots_changed")
+                states.append("changed")
             else:
-                right = bool(last.right)
-                states.append("class.dots_right" if right else "class.dots_answered")
-        return page.dots_view(states, self._words)
+                states.append("right" if last.right else "answered")
+        return states
 
     def proposal(self) -> str:
         """What might be done next, by how many are right, once the votes are closed; or nothing."""
@@ -164,7 +175,7 @@ class ClassAnswers:
         votes = [each for each in asked.votes if each is not None]
         if not votes or any(each.is_open(classroom.now()) for each in votes):
             return ""
-        last = [second or first for first, second in self._answers_here(asked)]
+        last = [second or first for first, second in self._answers_here(asked, self._students())]
         given = [each for each in last if each is not None and not each.is_skipped]
         if not given:
             return ""
@@ -184,10 +195,12 @@ class ClassAnswers:
         both = tuple(vote_on(votes, name, item, again) for again in (False, True))
         return VotedQuestion(name, item, block, both)
 
-    def _answers_here(self, asked: VotedQuestion | None) -> list[tuple[Given | None, Given | None]]:
+    def _answers_here(
+        self, asked: VotedQuestion | None, students: Students
+    ) -> list[tuple[Given | None, Given | None]]:
         """Of each student who is here, the first answer that counts, and the one after a
         discussion."""
-        students, found = self._students(), list[tuple[Given | None, Given | None]]()
+        found = list[tuple[Given | None, Given | None]]()
         for progress, is_here in zip(students.progress, students.here, strict=True):
             if not is_here:
                 continue

@@ -84,7 +84,7 @@ class TeacherForm:
         freezing = "thaw" if orders.frozen else "freeze"
         label = words("class.unfreeze" if orders.frozen else "class.freeze")
         fields.append(_button(freezing, label, tone="warning"))
-        if self._followed is not None:
+        if self._followed is not None and self._teaching.has_lab:
             fields.append(_button("own_lab", words("class.own_lab")))
         return _group("lead", words("class.lead"), [_note("told"), _note("who"), *fields])
 
@@ -128,6 +128,7 @@ class TeacherForm:
         members = classroom.members().values()
         followable = {f"{each.number}. {each.name}": each.number for each in members}
         fields = [
+            *([_html("grid")] if members and self._course.lessons else []),
             _html("code"),
             _html("table"),
             *self._of_claims(),
@@ -295,7 +296,7 @@ class TeacherForm:
         members = classroom.present().values()
         yield "told", chosen.told
         who = words("class.following", name=member.name) if member is not None else ""
-        yield "who", "" if large else who
+        yield "who", who if self._teaching.has_lab and not large else ""
         code = page.class_code(
             address=self._teaching.address,
             is_local=self._teaching.is_local,
@@ -327,6 +328,7 @@ class TeacherForm:
         yield "revealed", classroom.display.revealed
         yield "answers", self._answers.view(large)
         yield "dots", "" if large else self._answers.dots()
+        yield "grid", self._answers.grid()
         yield "proposal", "" if large else self._answers.proposal()
         yield "peeks", chosen.peeks
         yield "peek", self._peek.view(large=False) if chosen.peeks else ""

@@ -624,10 +624,18 @@ class PoleRow extends FieldRow {
     }
 }
 
-/** What the server shows, such as a table. */
+/** What the server shows, such as a table; a button in it sets the setting that it names. */
 class HtmlRow extends FieldRow {
     private shown = ""
     protected readonly inputs: HTMLElement[] = []
+
+    constructor(field: FormField, form: RowForm, signal: AbortSignal) {
+        super(field, form, signal)
+        this.element.addEventListener("click", event => {
+            const button = (event.target as Element).closest<HTMLButtonElement>("button[data-sets]")
+            if (button) form.host.set(button.dataset.sets!, Number(button.value))
+        }, { signal })
+    }
 
     words(): string { return "" }
 
@@ -636,7 +644,9 @@ class HtmlRow extends FieldRow {
     protected show(value: Value): void {
         if (value === this.shown) return
         this.shown = String(value)
+        const held = this.element.contains(document.activeElement) ? (document.activeElement as HTMLButtonElement).value : ""
         this.element.replaceChildren(elementsOf(this.shown))
+        if (held) this.element.querySelector<HTMLElement>(`button[value="${CSS.escape(held)}"]`)?.focus()
     }
 }
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -403,6 +404,16 @@ def test_dots_and_proposal_follow_from_the_answers(
     for key, count in (("right", right), ("answered", len(given) - right)):
         assert (ENGLISH(f"class.dots_{key}", count=count) in lecture.answers.dots()) == bool(count)
     assert lecture.answers.dots().count("border-radius:50%") == len(options)
+    found = r'value="(\d+)".*?<bdi>(\w+)</bdi>.*?</span> (\w+)'
+    cells = re.findall(found, lecture.answers.grid(), re.DOTALL)
+    states = [
+        "here" if option is None else "right" if block.options[option].right else "answered"
+        for option in options
+    ]
+    assert [(int(number), name) for number, name, _ in cells] == [
+        (at + 1, f"S{at}") for at in range(len(options))
+    ]
+    assert [state for *_, state in cells] == [ENGLISH(f"class.cell_{each}") for each in states]
     told = lecture.answers.proposal()
     if not given:
         assert told == ""
