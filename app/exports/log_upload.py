@@ -48,11 +48,13 @@ class ReadLog:
         found: the log, or why there is none.
         columns: names of the file's columns.
         quantities: as what they are read.
+        is_whole: whether it is the whole file, and not what comes before a gap.
     """
 
     found: ShownLog | Message | Exception
     columns: tuple[str, ...] = ()
     quantities: tuple[LogQuantity, ...] = ()
+    is_whole: bool = True
 
 
 def read_log(upload: LogUpload) -> ReadLog:
@@ -70,7 +72,8 @@ def read_log(upload: LogUpload) -> ReadLog:
             return ReadLog(Message("error.file_empty"))
         wanted = _wanted(robot, names, upload)
         try:
-            return ReadLog(_read(path, robot, upload, wanted), names, wanted)
+            log, is_whole = _read(path, robot, upload, wanted)
+            return ReadLog(log, names, wanted, is_whole)
         except ValueError as error:
             return ReadLog(_reason(error), names, wanted)
 
@@ -92,7 +95,10 @@ def _wanted(robot: Robot, names: tuple[str, ...], upload: LogUpload) -> tuple[Lo
     )
 
 
-def _read(path: Path, robot: Robot, upload: LogUpload, wanted: tuple[LogQuantity, ...]) -> ShownLog:
+def _read(
+    path: Path, robot: Robot, upload: LogUpload, wanted: tuple[LogQuantity, ...]
+) -> tuple[ShownLog, bool]:
+    """The log, and whether it is the whole file."""
     lacking = [each.name for each in wanted if not each.column and not each.is_optional]
     if lacking:
         raise CodedError("error.log_columns", names=", ".join(lacking))
@@ -100,7 +106,8 @@ def _read(path: Path, robot: Robot, upload: LogUpload, wanted: tuple[LogQuantity
     units = {each.name: each.unit for each in wanted if each.column}
     records = read_records(path, robot, log_columns(robot, columns, units))
     plant = robot.plant(upload.parameters)
-    return shown_log(upload.name, upload.robot, logged_motion(records[0][1], robot, plant))
+    motion = logged_motion(records[0][1], robot, plant)
+    return shown_log(upload.name, upload.robot, motion), len(records) == 1
 
 
 def _reason(error: ValueError) -> Message | Exception:

@@ -211,7 +211,7 @@ class PageFiles:
 
         def take(read: ReadLog) -> None:
             if isinstance(read.found, ShownLog):
-                self._post(ShowLog(read.found))
+                self._post(ShowLog(read.found, read.is_whole))
             self._news.append(_log_message(file, read, words))
 
         self._reader.read_log(upload, take, lambda why: self._refuse(file, why))

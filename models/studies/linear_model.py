@@ -51,6 +51,7 @@ class MotionRecord:
         u: torque of the motors, constant over each step, (rows, m), [N m].
         force: at the end-point, (rows, p), [N].
         measured: whether the joint angles are sensor readings, with rates from a filter.
+        start: time since the rows of its part of the file began, [s]; 0 unless there was a gap.
     """
 
     dt: float
@@ -59,6 +60,7 @@ class MotionRecord:
     u: Array
     force: Array
     measured: bool = False
+    start: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)

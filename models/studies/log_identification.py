@@ -11,12 +11,15 @@ import numpy as np
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
 from onpath.models.studies.exciting_motion import ExcitingMotion, exciting_motion
+from onpath.models.studies.identification import SHORTEST
 from onpath.models.studies.linear_model import MotionRecord, linear_model
 from onpath.models.studies.link_estimate import LinkEstimate, link_estimate
 from onpath.models.studies.parameter_estimate import Estimate, estimate, unexplained_of
 from onpath.models.studies.record_file import LogColumns, log_columns, read_records
+from onpath.models.systems.link_parameters import scaled_system
 from onpath.models.systems.parameter_specs import unknown_name
 from onpath.models.systems.robots import Robot, RobotEntry
+from onpath.models.systems.system import MechanicalSystem
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -65,6 +68,18 @@ class FileEstimate:
         return {name: float(f"{value:.4g}") for name, value in found.items()}
 
 
+def identified_system(entry: RobotEntry) -> tuple[MechanicalSystem, Array]:
+    """The system whose parameters are estimated, and the numbers for its geometry.
+
+    It is that of the robot; of a chain, `scaled_system`.
+    """
+    if entry.source is not None:
+        system = scaled_system(entry.source)
+        return system, np.zeros(len(system.parameter_names))
+    robot = entry.make(entry.parameters())
+    return robot.system, robot.plant(entry.parameters())
+
+
 def identify_file(
     path: Path,
     entry: RobotEntry,
@@ -89,13 +104,13 @@ def identify_file(
         OSError: the file cannot be read.
     """
     robot = entry.make(entry.parameters())
-    linear_model(robot.system)  # refuse an unsuitable robot before reading
+    system, geometry = identified_system(entry)
+    linear_model(system)  # refuse an unsuitable robot before reading
     if links and entry.source is None:
         raise CodedError("error.no_links", robot=entry.name)
     log = log_columns(robot, columns or {}, units or {}) if columns or units else None
     laws, used = _records(path, robot, log, law)
-    plant = robot.plant(entry.parameters())
-    result = estimate(robot.system, used, plant)
+    result = estimate(system, used, geometry)
     sums = (name for each in result.found for name, _ in each.others)
     names = (*(each.name for each in result.found), *sums, *result.unexcited)
     return FileEstimate(
@@ -105,13 +120,11 @@ def identify_file(
         seconds=sum(len(each.q) * each.dt for each in used),
         measured=all(each.measured for each in used),
         estimate=result,
-        motion=exciting_motion(robot.system, used, plant, names),
+        motion=exciting_motion(system, used, geometry, names),
         centre=np.mean(np.concatenate([each.q for each in used]), axis=0),
         fastest=np.max([np.abs(each.v).max(axis=0) for each in used], axis=0),
         others={
-            str(each): unexplained_of(
-                robot.system, result, _records(each, robot, log, law)[1], plant
-            )
+            str(each): unexplained_of(system, result, _records(each, robot, log, law)[1], geometry)
             for each in others
         },
         links=link_estimate(entry.source, used) if links and entry.source else None,
@@ -136,4 +149,5 @@ def _records(
     laws = [name for name in known if law in ("", name)]
     if not laws:
         raise unknown_name(law, known, "law")
-    return laws, [each for name, each in records if name in laws]
+    used = [each for name, each in records if name in laws]
+    return laws, [each for each in used if len(each.q) * each.dt >= SHORTEST] or used

@@ -131,7 +131,7 @@ def log_motion(record: MotionRecord, experiment: Experiment) -> Trajectory:
     """The end-point of a log, and where it is on the path of an experiment; see `along_path`.
 
     Args:
-        record: of the same robot. Its time begins at 0.
+        record: of the same robot. Its part of the file begins at 0.
 
     Returns:
         With the fields q, v, y, u, force, theta, theta_rate and xi, (n, 1).
@@ -139,7 +139,8 @@ def log_motion(record: MotionRecord, experiment: Experiment) -> Trajectory:
     robot, level_set = experiment.robot(), experiment.parameters.across == LEVEL_SET
     motion = logged_motion(record, robot, robot.plant(experiment.parameters))
     run = log_trajectory(motion, robot.frame, experiment.curve(), level_set=level_set)
-    return replace(run, fields={"q": record.q, "v": record.v, **run.fields})
+    t = record.start + run.t
+    return replace(run, t=t, fields={"q": record.q, "v": record.v, **run.fields})
 
 
 def log_trajectory(

@@ -2,14 +2,15 @@
 
 The columns of a log have the names, or places, and units that its user states; those of arrays of
 NumPy or MATLAB are named as in `quantities`, unless the user names them. Rows need not be evenly
-spaced in time; they are then interpolated. The angles are measured, and their rates are filtered.
+spaced in time; they are then interpolated. At a gap, another record begins. A row that repeats the
+one before counts once. The angles are measured, and their rates are filtered.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import groupby
+from itertools import groupby, pairwise
 from math import pi
 from pathlib import Path
 
@@ -28,7 +29,7 @@ from onpath.models.systems.robots import Robot
 LAW = "law"  # name of its column
 MISSING = ("error.table_no_column", "error.table_no_names")
 EVEN = 1e-3  # largest relative deviation of the time steps that is taken for rounding
-GAP = 0.05  # [s], longest time without a row
+GAP = 0.05  # [s], longest time without a row that is no gap
 FAR = 1e6  # largest absolute value of angles, torques and forces (SI)
 ANGLES = {"rad": 1.0, "deg": pi / 180, "rev": 2 * pi}
 LENGTHS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3}
@@ -112,7 +113,8 @@ def _scale(name: str, unit: str | float, usual: str) -> float:
 def read_records(
     path: Path, robot: Robot, log: LogColumns | None = None
 ) -> list[tuple[str, MotionRecord]]:
-    """The law and the record of each part of the file: consecutive rows of one side and law.
+    """The law and the record of each part of the file: consecutive rows of one side and law, with
+    no gap between them.
 
     The law is "" in a file without a column of that name. The columns may be in any order.
 
@@ -135,10 +137,24 @@ def read_records(
     records = list[tuple[str, MotionRecord]]()
     for _, part in groupby(range(len(keys)), key=keys.__getitem__):
         rows = list(part)
-        lines = table.lines[rows[0] : rows[-1] + 1]
         law = laws[rows[0]] if laws else ""
-        records.append((law, _record(table.numbers[rows], lines, robot, measured, time)))
+        begin = float(table.numbers[rows[0], 0])
+        _check_times(table.numbers[rows, 0], table.lines[rows[0] : rows[-1] + 1], time)
+        for piece in _between_gaps(table.numbers[rows, 0]):
+            numbers = table.numbers[rows[piece]]
+            record = _record(numbers, robot, measured, time)
+            records.append((law, replace(record, start=float(numbers[0, 0]) - begin)))
     return records
+
+
+def _between_gaps(times: Array) -> list[slice]:
+    """The rows between gaps, without pieces of less than `FEWEST` if there are longer ones."""
+    steps = np.diff(times)
+    usual = float(np.median(steps)) if steps.size else 0.0
+    ends = [0, *(np.flatnonzero(steps > max(GAP, usual)) + 1).tolist(), len(times)]
+    pieces = [(end - begin, slice(begin, end)) for begin, end in pairwise(ends)]
+    least = min(FEWEST, max(count for count, _ in pieces))
+    return [piece for count, piece in pieces if count >= least]
 
 
 def _own(path: Path, robot: Robot) -> tuple[bool, Table]:
@@ -194,7 +210,7 @@ def _quantities(path: Path, log: LogColumns, wanted: Sequence[str]) -> Table:
         CodedError: see `read_records`.
     """
     columns = [log.names[name] for name in wanted]
-    table = read_table(path, columns, (LAW,), time=log.names["t"])
+    table = _without_repeated(read_table(path, columns, (LAW,), time=log.names["t"]))
     numbers = table.numbers.copy()
     numbers[:, 0] -= numbers[0, 0]
     numbers *= [log.scales[name] for name in wanted]
@@ -207,21 +223,29 @@ def _quantities(path: Path, log: LogColumns, wanted: Sequence[str]) -> Table:
     return Table(numbers, table.texts, table.lines)
 
 
-def _record(
-    rows: Array, lines: Sequence[int], robot: Robot, measured: bool, time: str
-) -> MotionRecord:
+def _without_repeated(table: Table) -> Table:
+    """The table without rows whose numbers are those of the row before."""
+    numbers = table.numbers
+    kept = np.append(True, (numbers[1:] != numbers[:-1]).any(axis=1))
+    if kept.all():
+        return table
+    rows = np.flatnonzero(kept).tolist()
+    texts = {name: [each[i] for i in rows] for name, each in table.texts.items()}
+    return Table(numbers[kept], texts, [table.lines[i] for i in rows])
+
+
+def _record(rows: Array, robot: Robot, measured: bool, time: str) -> MotionRecord:
     """The record of some rows, evenly spaced.
 
     Args:
-        lines: their lines in the file.
         measured: whether the joint angles are measured; their rates are then filtered.
         time: name of the column of times, for messages.
 
     Raises:
-        CodedError: the times do not grow, or there are too few rows, or a gap between them.
+        CodedError: there are too few rows.
     """
     n, m, joints = robot.system.n, robot.system.m, robot.system.joints
-    dt = _step(rows[:, 0], lines, time)
+    dt = _step(rows[:, 0], time)
     times = rows[:, 0]
     q, v, u, force = np.split(rows[:, 1:], np.cumsum([n, n, m]), axis=1)
     if np.abs(np.diff(times) - dt).max() > EVEN * dt:
@@ -235,23 +259,23 @@ def _record(
     return MotionRecord(dt=dt, q=q, v=v, u=u, force=force, measured=measured)
 
 
-def _step(times: Array, lines: Sequence[int], column: str) -> float:
+def _check_times(times: Array, lines: Sequence[int], column: str) -> None:
+    """Raise CodedError if times do not grow, or there is only one."""
+    steps = np.diff(times)
+    if not steps.size:
+        raise CodedError("error.record_of_one_row", line=str(lines[0]))
+    bad = np.flatnonzero(steps <= 0)
+    if bad.size:
+        raise CodedError("error.record_times", line=str(lines[int(bad[0]) + 1]), column=column)
+
+
+def _step(times: Array, column: str) -> float:
     """The median time step.
 
     Raises:
         CodedError: see `_record`.
     """
-    steps = np.diff(times)
-    if not steps.size:
-        raise CodedError("error.record_of_one_row", line=str(lines[0]))
-    dt = float(np.median(steps))
-    bad = np.flatnonzero((steps <= 0) | (steps > max(GAP, dt)))
-    if bad.size:
-        at = int(bad[0])
-        line, step = str(lines[at + 1]), f"{steps[at]:.3g}"
-        if steps[at] <= 0:
-            raise CodedError("error.record_times", line=line, column=column)
-        raise CodedError("error.record_gap", line=line, column=column, step=step, most=f"{GAP:g}")
+    dt = float(np.median(np.diff(times)))
     if dt > BUMP / FEWEST * (1 + EVEN):
         step, most = f"{1e3 * dt:.3g}", f"{1e3 * BUMP / FEWEST:g}"
         raise CodedError("error.record_coarse", column=column, step=step, most=most)

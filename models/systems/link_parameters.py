@@ -30,11 +30,11 @@ import numpy as np
 from onpath.models.arrays import Array
 from onpath.models.robot_files.chain import Body, Chain
 from onpath.models.systems.rigid_chain import (
-    ChainFrames,
     ChainSource,
     Inertia,
     bias_forces,
     chain_frames,
+    chain_inertias,
     mass_matrix,
     potential_energy,
     solved,
@@ -92,6 +92,25 @@ def _stated(body: Body) -> dict[str, float]:
     values |= {f"m{axis}": float(x) for axis, x in zip("xyz", body.moment, strict=True)}
     axes = [(i, k) for i in range(3) for k in range(i, 3)]
     return values | {f"I{'xyz'[i]}{'xyz'[k]}": float(body.inertia[i, k]) for i, k in axes}
+
+
+@lru_cache(maxsize=16)
+def scaled_system(source: ChainSource) -> MechanicalSystem:
+    """The chain's equations of motion with factors and friction that few numbers tell.
+
+    Its parameters are factors of all masses and inertias and of all weights, a payload, [kg], and
+    the viscous friction of each joint, which files rarely know.
+    """
+    chain = source.chain
+    q, v = ca.SX.sym("q", chain.n), ca.SX.sym("v", chain.n)
+    names = ("inertia", "weight", "payload", *(f"b{i + 1}" for i in range(chain.n)))
+    parameters = ca.SX.sym("parameters", len(names))
+    inertia, weight, payload, *viscous = ca.vertsplit(parameters)
+    frames = chain_frames(chain, q)
+    inertias, weights = (chain_inertias(chain, each, payload) for each in (inertia, weight))
+    mass = mass_matrix(chain, frames, inertias, inertia)
+    bias = bias_forces(chain, frames, inertias, weights, v) + ca.vertcat(*viscous) * v
+    return _system(source, q, v, parameters, names, (mass, bias, potential_energy(frames, weights)))
 
 
 def link_motion(chain: Chain, q: ca.SX, v: ca.SX, parameters: ca.SX) -> tuple[ca.SX, ca.SX, ca.SX]:
@@ -158,18 +177,31 @@ def base_system(source: ChainSource) -> MechanicalSystem:
     values = [ca.SX(0)] * len(base.names)
     for i, value in zip(base.leading, ca.vertsplit(parameters), strict=True):
         values[i] = value
-    mass, bias, energy = link_motion(chain, q, v, ca.vertcat(*values))
-    frames: ChainFrames = chain_frames(chain, q)
+    motion = link_motion(chain, q, v, ca.vertcat(*values))
+    return _system(source, q, v, parameters, base.base_names, motion)
+
+
+def _system(
+    source: ChainSource,
+    q: ca.SX,
+    v: ca.SX,
+    parameters: ca.SX,
+    names: tuple[str, ...],
+    motion: tuple[ca.SX, ca.SX, ca.SX],
+) -> MechanicalSystem:
+    """A system of the chain with M, c and V."""
+    mass, bias, energy = motion
+    tip = tip_of(source.chain, chain_frames(source.chain, q))
     return mechanical_system(
         name=source.name,
         q=q,
         v=v,
         parameters=parameters,
-        parameter_names=base.base_names,
+        parameter_names=names,
         mass=mass,
         bias=bias,
-        inputs=chain.n,
-        output=ca.densify(ca.DM(source.axes) @ tip_of(chain, frames)),
+        inputs=source.chain.n,
+        output=ca.densify(ca.DM(source.axes) @ tip),
         potential_energy=energy,
         solve=solved,
     )

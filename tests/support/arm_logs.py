@@ -15,6 +15,7 @@ from onpath.models.arrays import Array
 from onpath.models.closed_loop.trajectory import Trajectory
 from onpath.models.paths.path_design import presets
 from onpath.models.studies.experiments import experiments, run
+from onpath.models.studies.log_identification import identified_system
 from onpath.models.studies.parameter_estimate import DELAY, Estimate, estimate
 from onpath.models.studies.record_file import log_columns, quantities, read_records
 from onpath.models.systems.catalogue import ROBOTS
@@ -123,6 +124,9 @@ def random_log(robot: str, seed: int, sticks: bool = True) -> TrueLog | None:
         return None
     plant = chosen.robot().plant(chosen.parameters).tolist()
     true = dict(zip(system.parameter_names, plant, strict=True))
+    source = ROBOTS[robot].source
+    for i, joint in enumerate(source.chain.joints if source else ()):
+        true[f"b{i + 1}"] = joint.damping
     true |= {f"c{i + 1}": dry for i in range(system.m)} | {DELAY: logger.late}
     slides = [name.endswith("_m") for name in system.coordinate_names]
     return TrueLog(logger.rows(motion, seed, slides), true)
@@ -153,7 +157,8 @@ def estimate_of(rows: tuple[Array, Array, Array], robot: str, plant: Array) -> E
         table = np.column_stack(rows)
         np.savetxt(path, table, "%.9g", ",", header=",".join(names), comments="")
         read = read_records(path, made, log_columns(made, {n: n for n in names}, {}))
-    return estimate(made.system, [record for _, record in read], plant)
+    system, geometry = identified_system(entry) if entry.source else (made.system, plant)
+    return estimate(system, [record for _, record in read], geometry)
 
 
 def shares_allowed(robot: str, log: TrueLog) -> dict[str, float]:

@@ -12,17 +12,22 @@ from onpath.app.lab.shown_log import ShownLog
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ShowLog(Command):
-    """Draw a log over the plots, from the beginning of each run on, in the place of any other."""
+    """Draw a log over the plots, from the beginning of each run on, in the place of any other.
+
+    Attributes:
+        is_whole: whether it is the whole file, and not what comes before a gap.
+    """
 
     log: ShownLog
+    is_whole: bool = True
 
     @override
     def apply(self, lab: Lab) -> None:
         lab.log = self.log
-        if lab.lessons.lesson is None:
-            lab.remark(lab.words("log.shown", file=self.log.file))
-        else:
-            lab.remark(lab.words("log.after_lesson", file=self.log.file))
+        key = "log.shown" if self.is_whole else "log.shown_in_part"
+        if lab.lessons.lesson is not None:
+            key = "log.after_lesson"
+        lab.remark(lab.words(key, file=self.log.file))
 
 
 @dataclass(frozen=True, slots=True)

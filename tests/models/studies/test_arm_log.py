@@ -5,9 +5,12 @@ from __future__ import annotations
 import json
 import shlex
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from scipy.io import savemat
 
 import onpath
@@ -213,11 +216,6 @@ def changed(row: int, column: int, text: str) -> str:
     return "\n".join(map(",".join, table))
 
 
-def without(first: int, last: int) -> str:
-    table = lines()
-    return "\n".join(map(",".join, table[:first] + table[last:]))
-
-
 PLACES = {name: place for place, name in enumerate(("t", "q1", "q2", "tau1", "tau2"), 1)}
 
 
@@ -346,9 +344,8 @@ HOSTILE = {
     "a comma in a number": (changed(7, 4, '"0,5"'), "line 8, column tau2"),
     "time goes back": (changed(100, 0, "0.1"), "line 101, column t"),
     "time stands still": (changed(100, 0, lines()[99][0]), "line 101, column t"),
-    "an endless time": (changed(100, 0, "1e19"), "line 101, column t"),
+    "an endless time": (changed(100, 0, "1e19"), "line 102, column t"),
     "a time from another world": (changed(100, 0, "1e21"), "line 101, column t"),
-    "a gap": (without(500, 600), "line 501, column t"),
     "too slow": ("\n".join(map(",".join, [lines()[0], *lines()[1::10]])), "column t"),
     "one row": ("\n".join(map(",".join, lines()[:2])), "line 2"),
     "too short": ("\n".join(map(",".join, lines(30))), ""),
@@ -372,6 +369,33 @@ def test_a_hostile_log_is_refused_in_one_line_with_its_place(
     said = capsys.readouterr()
     assert said.out == "" and said.err.startswith("onpath: ") and said.err.count("\n") == 1
     assert place in said.err and len(said.err) < 300
+
+
+@given(st.data())
+@settings(deadline=None, max_examples=10)
+def test_at_a_gap_another_record_begins_and_a_repeated_row_counts_once(data: st.DataObject) -> None:
+    """The records are those of the file that is cut there and has each row once."""
+    made = ROBOTS["five_bar"].make(ROBOTS["five_bar"].parameters())
+    known = log_columns(made, {name: name for name in QUANTITIES}, {})
+    first = data.draw(st.integers(100, 1400))
+    last = first + data.draw(st.integers(60, 500))
+    again = data.draw(st.lists(st.integers(1, 90), max_size=3, unique=True))
+    table = lines()
+
+    def read(rows: list[list[str]]) -> list[MotionRecord]:
+        with TemporaryDirectory() as folder:
+            path = Path(folder, "log.csv")
+            path.write_text("\n".join(map(",".join, [table[0], *rows])), encoding="utf-8")
+            return [record for _, record in read_records(path, made, known)]
+
+    repeated = [row for i, row in enumerate(table[1:first], 1) for _ in range(1 + (i in again))]
+    before, after = read([*repeated, *table[last:]])
+    for found, (wanted,) in ((before, read(table[1:first])), (after, read(table[last:]))):
+        assert found.q == pytest.approx(wanted.q, abs=1e-9)
+        assert found.u == pytest.approx(wanted.u, abs=1e-9)
+        assert found.dt == pytest.approx(wanted.dt)
+    assert before.start == 0
+    assert after.start == pytest.approx(float(table[last][0]) - float(table[1][0]))
 
 
 @pytest.mark.parametrize(
