@@ -1,7 +1,8 @@
 """Guesses which columns of a log are the quantities of a robot, and their units, from their names.
 
 Names as controllers and recorders write them are known: q1_deg, "Joint 1 [rad]", position.0,
-effort_3, time (ms). A guess is meant to be shown, and changed where it is wrong.
+effort_3, time (ms), and those with the joints of the robot's file, as elbow/position. A guess is
+meant to be shown, and changed where it is wrong.
 """
 
 from __future__ import annotations
@@ -49,7 +50,8 @@ def guessed_columns(robot: Robot, names: Sequence[str]) -> GuessedColumns:
     motion = [name for name in known if not name.startswith("force")]
     if [*names] == [str(i) for i in range(1, len(motion) + 1)]:
         return GuessedColumns(dict(zip(motion, names, strict=True)), {})
-    parts = {name: _parts(name) for name in names}
+    joints = [joint.name for joint in robot.chain.joints] if robot.chain else []
+    parts = {name: _parts(_numbered(name, joints)) for name in names}
     found = dict[str, str]()
     for kind, members in groupby(known, key=lambda q: q.rstrip("0123456789")):
         found |= _of_kind(kind, [*members], known, parts)
@@ -85,6 +87,15 @@ def _counts(numbers: Sequence[int], count: int) -> bool:
     """Whether numbers count so many columns, from 0 or 1 on, or any one column."""
     first = numbers[0]
     return len(numbers) == count and (count == 1 or numbers == [*range(first, first + count)])
+
+
+def _numbered(name: str, joints: Sequence[str]) -> str:
+    """A column's name with a joint's number instead of its name in the robot's file."""
+    found = max((each for each in joints if each in name), key=len, default="")
+    if not found:
+        return name
+    number = f" {1 + joints.index(found)} "
+    return f"q {number}" if name == found else name.replace(found, number)
 
 
 def _parts(name: str) -> tuple[str, str, str]:

@@ -47,6 +47,20 @@ def test_columns_are_recognised_by_their_names(robot, way, first, draw) -> None:
     assert ("deg" in way[1] or "°" in way[1]) == (found.units.get("q1") == "deg")
 
 
+def test_columns_with_the_joints_names_are_recognised() -> None:
+    entry = ROBOTS["seven_axes"]
+    made = entry.make(entry.parameters())
+    assert made.chain is not None
+    joints = [joint.name for joint in made.chain.joints]
+    kinds = "velocity", "effort", "position"
+    names = ["__time", *(f"/joint_states/{j}/{k}" for k in kinds for j in reversed(joints))]
+    found = guessed_columns(made, names).columns
+    for i, joint in enumerate(joints, 1):
+        assert found[f"q{i}"] == f"/joint_states/{joint}/position"
+        assert found[f"tau{i}"] == f"/joint_states/{joint}/effort"
+    assert set(guessed_columns(made, joints).columns) == {f"q{i + 1}" for i in range(7)}
+
+
 def test_columns_without_names_are_time_angles_and_torques() -> None:
     entry = ROBOTS["five_bar"]
     made = entry.make(entry.parameters())
