@@ -15,7 +15,14 @@ from msgspec.structs import replace
 
 from onpath.lessons.action_schema import Script, StepSetup
 from onpath.lessons.cheating import fair_faults
-from onpath.lessons.concept_test.concept_test import FOLDER, both_tests
+from onpath.lessons.concept_test.concept_test import (
+    BEFORE,
+    FOLDERS,
+    both_sittings,
+    name_of,
+    questions,
+    unlike_forms,
+)
 from onpath.lessons.lecture import LECTURE
 from onpath.lessons.parse import read_lesson
 from onpath.lessons.problems import LessonError, Problem, line_of, near
@@ -56,7 +63,8 @@ class Course:
     Attributes:
         lessons: name -> language -> lesson.
         routes: name -> route.
-        tests: name -> language -> lesson; the concept test before and after the course, if any.
+        tests: name -> language -> lesson; the concept test before and after the course, if any,
+            in each of its forms.
         lecture: language -> lesson, see `lessons.lecture`; empty if there is none.
     """
 
@@ -86,6 +94,11 @@ class Course:
         """
         versions = (self.played | self.tests)[name]
         return versions.get(language) or versions.get(DEFAULT) or next(iter(versions.values()))
+
+    def forms(self, language: str) -> list[Lesson]:
+        """The concept test in each of its forms; empty if there is none."""
+        names = (name_of(BEFORE, form) for form in range(len(FOLDERS)))
+        return [self.lesson(name, language) for name in names if name in self.tests]
 
     def numbers(self) -> dict[str, str]:
         """Lesson -> its displayed number: "1", "2", ...
@@ -119,8 +132,10 @@ def read_course(
     """
     lessons, routes, tests = dict(first.lessons), first.routes, first.tests
     lecture = first.lecture
-    homes, problems = dict[str, Path](), list[Problem]()
+    homes, test_homes = dict[str, Path](), dict[str, Path]()
+    problems = list[Problem]()
     for folder in folders:
+        forms = dict[str, Mapping[str, Lesson]]()
         found = sorted(
             {file.parent for file in folder.glob("[!.]*/[!.]*.md") if file.stem != "README"}
         )
@@ -134,19 +149,20 @@ def read_course(
         for home in found:
             versions, wrong = read_versions(home)
             problems += wrong
-            if home.name == FOLDER:
-                tests = both_tests(versions) or tests
+            if home.name in FOLDERS:
+                forms[home.name], test_homes[home.name] = versions, home
             elif home.name == LECTURE:
                 lecture = versions or lecture
             elif versions and home.name in lessons:
                 problems.append(Problem(str(home), 1, f"a second lesson {home.name!r}"))
             elif versions:
                 lessons[home.name], homes[home.name] = versions, home
-        problems += _folder_faults(folder, found)
+        tests = both_sittings([forms[name] for name in FOLDERS if forms.get(name)]) or tests
+        problems += [*_form_faults(folder, forms), *_folder_faults(folder, found)]
         read = read_routes(folder, lessons)
         routes, problems = {**read.routes, **routes}, problems + read.problems
     course = Course(lessons, routes, tests, lecture)
-    problems += _warm_up_faults(course, homes)
+    problems += [*_warm_up_faults(course, homes), *_treated_faults(course, test_homes)]
     return course, sorted(problems)
 
 
@@ -170,6 +186,37 @@ def _warm_up_faults(course: Course, homes: Mapping[str, Path]) -> Iterator[Probl
                         yield Problem(file, step.line, text + near(drawn, list(counts)))
 
 
+def _treated_faults(course: Course, homes: Mapping[str, Path]) -> Iterator[Problem]:
+    """Questions of the concept test that name a page which there is not.
+
+    Args:
+        homes: folders of the forms that are checked, by name.
+    """
+    for folder, home in homes.items():
+        name = name_of(BEFORE, FOLDERS.index(folder))
+        if name not in course.tests:
+            continue
+        test = course.lesson(name, DEFAULT)
+        for step, quiz in zip(test.steps, questions(test).values(), strict=True):
+            page = quiz.treated
+            if page and not course.has_steps(page.lesson, page.step - 1, page.step - 1):
+                text = f"treated: there is no step {page.step} of a lesson {page.lesson!r}"
+                file = str(home / f"{test.language}.md")
+                yield Problem(file, step.line, text + near(page.lesson, list(course.lessons)))
+
+
+def _form_faults(folder: Path, forms: Mapping[str, Mapping[str, Lesson]]) -> Iterator[Problem]:
+    """Problems of the concept test's second form beside the first one."""
+    first, second = (forms.get(name, {}) for name in FOLDERS)
+    if second and not first:
+        yield Problem(str(folder / FOLDERS[1]), 1, f"there is no first form, {FOLDERS[0]}")
+    if first and second and set(first) != set(second):
+        yield Problem(str(folder / FOLDERS[1]), 1, "not the languages of the first form")
+    for language in set(first) & set(second):
+        for line, text in unlike_forms(first[language], second[language]):
+            yield Problem(str(folder / FOLDERS[1] / f"{language}.md"), line, text)
+
+
 def _folder_faults(folder: Path, lessons: Sequence[Path]) -> Iterator[Problem]:
     """Problems of the folders in a course: numbers used twice, and folders that are not read."""
     numbered: dict[str, str] = {}
@@ -180,7 +227,7 @@ def _folder_faults(folder: Path, lessons: Sequence[Path]) -> Iterator[Problem]:
                 yield Problem(
                     str(home), 1, f"{first!r} has the number {number[0].removesuffix('-')}, too"
                 )
-    known = [ROUTES, FOLDER, LECTURE]
+    known = [ROUTES, *FOLDERS, LECTURE]
     for other in sorted(folder.iterdir()) if lessons else ():
         unread = other not in lessons and other.name not in known and other.name[0] not in "._"
         if unread and other.is_dir():
@@ -227,7 +274,7 @@ def read_versions(home: Path) -> tuple[dict[str, Lesson], list[Problem]]:
             problems += _differences(first, other, home / f"{other.language}.md")
             same = replace(other, keys=first.keys, version=first.version)
             versions[other.language] = same
-        if home.name != FOLDER:
+        if home.name not in FOLDERS:
             problems += read_references(first, home / REFERENCE)[1]
     return versions, problems
 
@@ -394,7 +441,9 @@ def _asked(step: Step) -> dict[str, object]:
             for b in blocks
             if isinstance(b, Derivation)
         ],
-        "misconceptions": [bool(b.misconception) for b in blocks if isinstance(b, Quiz)],
+        "misconceptions": [
+            (bool(b.misconception), b.treated, b.transfer) for b in blocks if isinstance(b, Quiz)
+        ],
         "warm-up questions": [b.warm_up for b in blocks if isinstance(b, Quiz)],
         f"texts ({', '.join(NOTES)})": [
             tuple(bool(getattr(b, name, "")) for name in NOTES) for b in step.blocks

@@ -18,7 +18,7 @@ from onpath.lessons.adaptive.branches import faults_of_when
 from onpath.lessons.adaptive.own_numbers import unanswered
 from onpath.lessons.behaviour.marks import Behaviour, take_behaviours
 from onpath.lessons.completeness import NEEDED, first_page_faults, lacks, order_faults
-from onpath.lessons.concept_test.concept_test import FOLDER, lacks_of_test
+from onpath.lessons.concept_test.concept_test import FOLDERS, lacks_of_test
 from onpath.lessons.equations import FILE, Part, equations_table, read_equations
 from onpath.lessons.formulas import TextError, reader
 from onpath.lessons.kept.option_keys import fingerprint, keys_of
@@ -219,7 +219,7 @@ class _Reader:
 
     def _lacks(self, steps: Sequence[Step], broken: set[int]) -> Iterable[tuple[int, str]]:
         """What a lesson lacks as a whole; of the test and of a lecture, less is asked."""
-        if self._folder == FOLDER:
+        if self._folder in FOLDERS:
             return ((1, fault) for fault in lacks_of_test(steps))
         return lacks(steps, broken, () if self._folder == LECTURE else NEEDED)
 

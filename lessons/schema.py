@@ -182,12 +182,21 @@ class Sketch(Data, frozen=True, tag="sketch", tag_field="kind"):
 Prediction = Choice | Sketch
 
 
+class Page(Data, frozen=True):
+    """A page of a lesson, by the number of its step, from 1."""
+
+    lesson: str
+    step: int
+
+
 class Quiz(Data, frozen=True):
     """A question at the end of a lesson, or of the concept test.
 
     Attributes:
         second: asked after a wrong choice, in place of the same question once more.
         misconception: for the teacher, the false belief that a question of the test targets.
+        treated: the page that treats this belief.
+        transfer: whether a question of the test is about other bodies than those of the lessons.
         warm_up: the earlier lesson from which it is drawn; such a question counts nothing.
     """
 
@@ -195,6 +204,8 @@ class Quiz(Data, frozen=True):
     options: tuple[Option, ...]
     second: SecondTry | None = None
     misconception: str = ""
+    treated: Page | None = None
+    transfer: bool = False
     warm_up: str = ""
 
 

@@ -15,6 +15,7 @@ from onpath.app.common.palette import AMBER, AZURE, GREEN, GREY, VIOLET, Colour
 from onpath.app.common.qr_code import qr_code
 from onpath.app.common.templates import render
 from onpath.app.viser_adapter.addresses import REMOTE, WALL
+from onpath.lessons.concept_test.concept_test import sitting_of
 from onpath.lessons.concept_test.titles import titles_of_tests
 from onpath.lessons.course import Course
 from onpath.lessons.option_order import LETTERS
@@ -100,7 +101,7 @@ def _position(progress: Progress, course: Course, words: Words) -> tuple[str, st
     if not course.has(name):
         return words("class.free"), "", ""
     if name in course.tests:
-        return titles_of_tests(course, words)[name], "", ""
+        return titles_of_tests(course, words)[sitting_of(name)], "", ""
     lesson = course.lesson(name, words.language)
     step = progress.notes[name].step if name in progress.notes else 0
     index = min(step, len(lesson.steps) - 1)

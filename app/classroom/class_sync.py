@@ -8,10 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from onpath.app.classroom.classroom import Classroom, Orders
+from onpath.app.classroom.classroom import Classroom, Member, Orders
 from onpath.app.common.periodic import Periodic
-from onpath.app.lab.commands import Freeze, HoldVotes, KeepWithin, SayLate
+from onpath.app.lab.commands import DealForm, Freeze, HoldVotes, KeepWithin, SayLate
 from onpath.app.lab.lab import Lab
+from onpath.lessons.concept_test.concept_test import BEFORE, dealt_in_class, form_of, taken
 from onpath.lessons.progress import Notes, Progress
 from onpath.lessons.votes import counted
 
@@ -80,6 +81,7 @@ class ClassSync:
             changes["gains"] = gains
         if lab.asked != self._asked.get(code):
             self._asked[code], changes["active"] = lab.asked, self._class.clock()
+        _deal(self._first_form(member), lab)
         orders = self._class.orders
         if orders.pushes > member.taken:
             changes["taken"], changes["given"] = orders.pushes, self._class.clock()
@@ -89,6 +91,14 @@ class ClassSync:
             lab.post(HoldVotes(votes))
         if changes:
             self._class.note(code, **changes)
+
+    def _first_form(self, member: Member) -> int:
+        """The form of the concept test that a member gets before the course: what was answered
+        before it in another lab of the same word, or what is dealt."""
+        same = self._class.members().values() if member.word else ()
+        opened = [taken(each.progress, BEFORE) for each in same if each.word == member.word]
+        known = next((form_of(name) for name in opened if name), None)
+        return dealt_in_class(self._class.code, member.number) if known is None else known
 
     def _is_late(self, before: Progress, now: Progress) -> bool:
         """Whether an answer has come that does not count, since its vote is closed."""
@@ -101,6 +111,12 @@ class ClassSync:
             if came and counted(found, vote.item, vote, vote.again) is None:
                 return True
         return False
+
+
+def _deal(first: int, lab: Lab) -> None:
+    """Give a lab the form of the concept test that comes first, unless it has it."""
+    if first != lab.lessons.first_form:
+        lab.post(DealForm(first))
 
 
 def _give(orders: Orders, lab: Lab, is_new: bool) -> None:

@@ -12,102 +12,126 @@ from onpath.app.common.templates import render
 from onpath.lessons.concept_test.concept_test import (
     AFTER,
     BEFORE,
-    TESTS,
+    FORMS,
+    SITTINGS,
     chosen_in,
-    notes_of,
+    handed_in,
+    name_of,
     questions,
     right_in,
+    taken,
 )
-from onpath.lessons.concept_test.gain import ClassGain, class_gain
+from onpath.lessons.concept_test.estimates import FEWEST, Estimated
+from onpath.lessons.concept_test.gain import ClassGain, Forms, class_gain, people
+from onpath.lessons.concept_test.items import Item, items
 from onpath.lessons.option_order import LETTERS
-from onpath.lessons.progress import Progress
+from onpath.lessons.progress import Notes, Progress
 from onpath.lessons.schema import Lesson, Quiz
 from onpath.lessons.words import Words
 
+Students = Sequence[tuple[str, Progress]]
+"""Who each student is, by lab code or by what links the labs of a student, and the progress."""
+
 
 def item_distribution(
-    test: Lesson, index: int, name: str, students: Sequence[Progress]
+    forms: Forms, form: int, index: int, sitting: str, students: Students
 ) -> Distribution:
-    """The class's answers to a question in one of the tests; only tests handed in count.
+    """The class's answers to a question before or after the course; only tests handed in count.
 
     Args:
-        index: index of the question.
-        name: name of the test.
+        form: of the question, by its index; those who have opened the other one do not count.
+        index: of the question.
+        sitting: one of `SITTINGS`.
     """
-    block = question_at(test, index)
-    handed = [notes for each in students if (notes := notes_of(each, name)) is not None]
-    chosen = [chosen_in(test, notes)[index] for notes in handed]
+    block, here, handed = question_at(forms[form], index), 0, list[Notes]()
+    for _, progress in students:
+        here += len(forms) == 1 or taken(progress, sitting) == name_of(sitting, form)
+        found = handed_in(progress, sitting)
+        handed += [found[1]] if found is not None and found[0] == form else []
+    chosen = [chosen_in(forms[form], notes)[index] for notes in handed]
     counts = tuple(chosen.count(option) for option in range(len(block.options)))
     return Distribution(
         counts=counts,
         sketches=(),
         skipped=chosen.count(None),
-        waiting=len(students) - len(handed),
-        here=len(students),
+        waiting=here - len(handed),
+        here=here,
         answered=sum(counts),
     )
 
 
 def gain_view(
-    test: Lesson, students: Sequence[Progress], revealed: bool, words: Words, large: bool = False
+    forms: Forms, students: Students, revealed: bool, words: Words, large: bool = False
 ) -> str:
-    """The class's normalised gain and, if revealed, the right answers to each question, [%]."""
-    found = class_gain(test, students)
-    handed = [sum(notes_of(each, name) is not None for each in students) for name in TESTS]
-    rows = [
-        (number, block.misconception, *shares)
-        for number, (block, *shares) in enumerate(
-            zip(questions(test).values(), found.before, found.after, strict=False), 1
-        )
-    ]
+    """What the class has gained and, if revealed, the share of right answers to each question, and
+    how well it tells students apart."""
+    known = people(forms, students)
+    beliefs = [block.misconception for block in questions(forms[0]).values()]
+    found = class_gain(forms, known)
     return render(
         "class/test.html",
-        handed=words("test.waiting", part=handed[0], all=len(students), after=handed[1]),
+        handed=words(
+            "test.waiting",
+            part=sum(each.before is not None for each in known),
+            all=len(known),
+            after=sum(each.after is not None for each in known),
+        ),
+        fewest=FEWEST,
         found=found,
-        rows=rows if revealed else [],
+        rows=list(zip(beliefs, found.questions, strict=True)) if revealed else [],
+        forms=list(zip(FORMS, items(forms, known), strict=False)) if revealed else [],
         words=words,
         large=large,
     )
 
 
 def sheets_without_names(
-    test: Lesson,
-    students: Sequence[tuple[str, Progress]],
+    forms: Forms,
+    students: Students,
     code: str,
     linked: Mapping[str, str] = MappingProxyType({}),
 ) -> list[Sheet]:
-    """Sheets of the record: the class, and every student who has handed in, without names.
+    """Sheets of the record: every student who has handed in, without names, the class, and the
+    questions; numbers about the class only from `FEWEST` students on.
 
     A student has the same pseudonym in both tests. It does not reveal who the student is. `word` is
     the hash of a word that the student made up. It is the same in the records of other months, and
     of the student's other labs.
 
     Args:
-        students: lab code and progress of each student.
         code: the class code.
         linked: hashes of words, by lab code.
     """
-    hidden = {
-        sha256(f"{code} {lab}".encode()).hexdigest()[:8]: (linked.get(lab, ""), progress)
+    hidden = [
+        (sha256(f"{code} {lab}".encode()).hexdigest()[:8], linked.get(lab, ""), progress)
         for lab, progress in students
-    }
-    gain = class_gain(test, [progress for _, progress in students])
-    columns = ("pseudonym", "word", "test", "question", "item", "result", "chosen", "right")
+    ]
+    known = people(forms, [(linked.get(lab) or lab, progress) for lab, progress in students])
+    columns = "pseudonym", "word", "test", "form", "question", "item", "result", "chosen", "right"
+    of_class = ("test", "of", "students", *_ESTIMATE)
+    of_items = ("form", "question", "item", "other bodies", "of", "students", *_ESTIMATE)
     return [
-        Sheet("Concept test", columns, _test_rows(test, sorted(hidden.items()))),
-        Sheet("Concept test, class", ("test", "of", "students", "value"), _class_rows(gain)),
+        Sheet("Concept test", columns, _test_rows(forms, sorted(hidden, key=lambda each: each[0]))),
+        Sheet("Concept test, class", of_class, _class_rows(class_gain(forms, known))),
+        Sheet("Concept test, questions", of_items, _item_rows(forms, items(forms, known))),
     ]
 
 
-def _test_rows(test: Lesson, students: Iterable[tuple[str, tuple[str, Progress]]]) -> Iterator[Row]:
-    for pseudonym, (word, progress) in students:
-        for name in TESTS:
-            if (notes := notes_of(progress, name)) is None:
+_ESTIMATE = ("value", "low", "high")
+
+
+def _test_rows(forms: Forms, students: Iterable[tuple[str, str, Progress]]) -> Iterator[Row]:
+    for pseudonym, word, progress in students:
+        for sitting in SITTINGS:
+            found = handed_in(progress, sitting)
+            if found is None or found[0] >= len(forms):
                 continue
+            form, notes = found
+            test = forms[form]
             asked = zip(test.steps, chosen_in(test, notes), right_in(test, notes), strict=True)
             for number, (step, option, right) in enumerate(asked, 1):
-                row = {"pseudonym": pseudonym, "word": word, "test": name, "question": number}
-                row |= {"item": step.title, "right": int(right)}
+                row = {"pseudonym": pseudonym, "word": word, "test": sitting, "form": FORMS[form]}
+                row |= {"question": number, "item": step.title, "right": int(right)}
                 if option is None:
                     yield {**row, "result": "open"}
                 else:
@@ -115,17 +139,27 @@ def _test_rows(test: Lesson, students: Iterable[tuple[str, tuple[str, Progress]]
 
 
 def _class_rows(found: ClassGain) -> Iterator[Row]:
-    """The class's results; nothing if no student has handed in both tests."""
-    if not found.students:
-        return
     values = {
-        (BEFORE, "mean [%]"): found.mean_before,
-        (AFTER, "mean [%]"): found.mean_after,
+        (BEFORE, "mean [%]"): found.before,
+        (AFTER, "mean [%]"): found.after,
         ("", "normalised gain"): found.gain,
     }
-    for (name, item), value in values.items():
-        row = {"test": name, "of": item, "students": found.students}
-        yield row if value is None else {**row, "value": value}
+    for (name, what), value in values.items():
+        yield {"test": name, "of": what, "students": found.students, **_cells(value)}
+
+
+def _item_rows(forms: Forms, found: Sequence[Sequence[Item]]) -> Iterator[Row]:
+    for letter, test, form in zip(FORMS, forms, found, strict=False):
+        asked = zip(test.steps, questions(test).values(), form, strict=True)
+        for number, (step, block, item) in enumerate(asked, 1):
+            row = {"form": letter, "question": number, "item": step.title}
+            row |= {"other bodies": int(block.transfer), "students": item.count}
+            yield {**row, "of": "right [%]", **_cells(item.difficulty)}
+            yield {**row, "of": "discrimination", **_cells(item.discrimination)}
+
+
+def _cells(estimate: Estimated | None) -> dict[str, float]:
+    return {} if estimate is None else {name: getattr(estimate, name) for name in _ESTIMATE}
 
 
 def question_at(test: Lesson, index: int) -> Quiz:

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from onpath.app.common.templates import render
+from onpath.lessons.concept_test.concept_test import sitting_of
 from onpath.lessons.pace import Pace
 from onpath.lessons.progress import Notes, Progress
 from onpath.lessons.schema import Lesson
@@ -31,12 +32,12 @@ def whereabouts(lesson: Lesson, students: Iterable[Progress]) -> Whereabouts:
     """How many students are in each step of a lesson, at its end, or elsewhere."""
     steps, ended, elsewhere = [0] * len(lesson.steps), 0, 0
     for progress in students:
-        if progress.lesson != lesson.name:
+        if sitting_of(progress.lesson) != lesson.name:
             elsewhere += 1
         elif progress.ended:
             ended += 1
         else:
-            index = progress.notes.get(lesson.name, Notes()).step
+            index = progress.notes.get(progress.lesson, Notes()).step
             steps[min(index, len(steps) - 1)] += 1
     return Whereabouts(tuple(steps), ended, elsewhere)
 

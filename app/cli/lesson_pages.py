@@ -30,6 +30,8 @@ class WriteGuide:
     """Folder of lessons; by default the built-in ones."""
     language: str = "en"
     """Language of the guide."""
+    concept_test: bool = False
+    """Add the concept test with its answers; do not publish such a guide."""
 
     def run(self) -> None:
         """Write the guide."""
@@ -39,7 +41,8 @@ class WriteGuide:
         _check(files, "--html FILE or --pdf FILE")
         course, folder, words = _course(self.lessons, self.language)
         names = [chosen_lesson(course, asked).name for asked in self.names]
-        page = guide(course, folder, names or list(course.lessons), words)
+        chosen = names or list(course.lessons)
+        page = guide(course, folder, chosen, words, self.concept_test)
         _write(page, self.html, self.pdf)
 
 

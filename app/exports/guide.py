@@ -11,30 +11,33 @@ from pathlib import Path
 
 from onpath.app.common.templates import render
 from onpath.app.exports.course_material import taught_lesson
-from onpath.lessons.concept_test.concept_test import BEFORE
+from onpath.lessons.concept_test.concept_test import FORMS
 from onpath.lessons.course import Course
 from onpath.lessons.option_order import LETTERS
 from onpath.lessons.words import Words
 
 
-def guide(course: Course, folder: Path, names: Iterable[str], words: Words) -> str:
+def guide(
+    course: Course, folder: Path, names: Iterable[str], words: Words, test: bool = False
+) -> str:
     """The teacher's guide to some lessons as a standalone page.
-
-    A guide to all lessons also has the concept test.
 
     Args:
         folder: contains the lessons' own folders.
+        test: whether the concept test and its answers are in it.
 
     Raises:
         ValueError: the reference solutions of a lesson cannot be read.
     """
     lessons = [taught_lesson(course, folder, name, words) for name in names]
+    forms = course.forms(words.language)
     whole = {taught.lesson.name for taught in lessons} == {*course.lessons}
-    test = course.lesson(BEFORE, words.language) if whole and course.tests else None
     return render(
         "guide/guide.html",
         lessons=lessons,
-        test=test,
+        forms=list(zip(FORMS, forms, strict=False)) if test else [],
+        apart=bool(forms) and whole and not test,
+        numbers=course.numbers(),
         words=words,
         letters=LETTERS,
         version=version("onpath"),

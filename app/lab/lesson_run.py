@@ -87,6 +87,7 @@ class LessonRun(LessonState):
         Raises:
             ValueError: there is no such lesson.
         """
+        name = self.own(name)
         self.check_within(name, self.left_at(name))
         self.open_at(name, self.left_at(name), lab)
         self.progress = replace(self.progress, route="")
@@ -104,7 +105,7 @@ class LessonRun(LessonState):
         self.open_at(lesson, index, lab, route=name)
 
     def open_at(self, name: str, index: int, lab: LessonLab, route: str = "") -> None:
-        """Open a step of a lesson, and set the lab up for it.
+        """Open a step of a lesson, and set the lab up for it; a test in the student's own form.
 
         Args:
             route: the route to follow from now on; if empty, the present one stays.
@@ -112,6 +113,7 @@ class LessonRun(LessonState):
         Raises:
             ValueError: there is no such lesson or step.
         """
+        name = self.own(name)
         if not self.course.has(name):
             raise unknown_name(name, list(self.course.lessons), "lesson")
         lesson = self.course.lesson(name, self.progress.language)

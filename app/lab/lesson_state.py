@@ -15,6 +15,7 @@ from msgspec.structs import replace
 from onpath.app.common.product import product_version
 from onpath.app.lab.answers import kept_number, kept_text
 from onpath.lessons.adaptive.branches import is_shown
+from onpath.lessons.concept_test.concept_test import own_test
 from onpath.lessons.course import Course
 from onpath.lessons.derivation.typed import read_formula, spellings
 from onpath.lessons.given import MOST_TEXT, Answer, Given
@@ -70,6 +71,7 @@ class LessonState:
         words: texts in the student's language.
         version: changes whenever the page must be redrawn.
         pace: the steps within which the teacher lets the student go; None if anywhere.
+        first_form: index of the form of the concept test that comes before the course; see `own`.
         votes: what the class is asked now. Until they are closed, nobody learns what is right.
         stored: the progress that is in the database; None if nobody stores it.
         answers_given: how many answers were given here so far.
@@ -89,6 +91,7 @@ class LessonState:
         self.words = words or Words(self.progress.language)
         self.version = 0
         self.pace: Pace | None = None
+        self.first_form = 0
         self.votes: tuple[Vote, ...] = ()
         self.stored: Progress | None = None
         self.settled: tuple[str, ...] = ()
@@ -114,6 +117,10 @@ class LessonState:
     def index(self) -> int:
         """Index of the open step."""
         return self.left_at(self.progress.lesson)
+
+    def own(self, name: str) -> str:
+        """A test in the form that this student gets; the name of a lesson is itself."""
+        return own_test(name, self.course.tests, self.progress, self.first_form)
 
     def left_at(self, name: str) -> int:
         """Index of the step of a lesson that was last open; 0 if there is no such lesson."""

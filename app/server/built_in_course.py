@@ -10,7 +10,7 @@ from threading import RLock
 
 from msgspec.structs import replace
 
-from onpath.lessons.concept_test.concept_test import FOLDER, TESTS
+from onpath.lessons.concept_test.concept_test import FOLDERS, SITTINGS, name_of
 from onpath.lessons.course import BUILT_IN, Course
 from onpath.lessons.lecture import LECTURE
 from onpath.lessons.parse import read_lesson
@@ -67,8 +67,12 @@ def built_in_course() -> Course:
         return Versions(home, name, (DEFAULT, *sorted(languages)))
 
     homes = sorted(file.parent for file in BUILT_IN.glob(f"*/{DEFAULT}.md"))
-    names = [home.name for home in homes if home.name not in (FOLDER, LECTURE)]
+    names = [home.name for home in homes if home.name not in (*FOLDERS, LECTURE)]
     lessons = {name: versions(BUILT_IN / name, name) for name in names}
-    tests = {name: versions(BUILT_IN / FOLDER, name) for name in TESTS}
+    tests = {
+        name: versions(BUILT_IN / folder, name)
+        for form, folder in enumerate(FOLDERS)
+        for name in (name_of(sitting, form) for sitting in SITTINGS)
+    }
     lecture = versions(BUILT_IN / LECTURE, LECTURE)
     return Course(lessons, read_routes(BUILT_IN).routes, tests, lecture)

@@ -24,6 +24,7 @@ from onpath.app.storage.lab_state import LabState, StateObserver, put_back
 from onpath.app.storage.leases import LEASE
 from onpath.app.storage.records import HeldElsewhere, NotKept
 from onpath.app.storage.write_behind import WriteBehind
+from onpath.lessons.concept_test.concept_test import dealt
 from onpath.models.errors import CodedError, Message
 
 log = logging.getLogger(__name__)
@@ -207,6 +208,7 @@ class LabRegistry:
         """
         with self._making:
             lab = self.make()
+            lab.lessons.first_form = dealt(code)
             if language:
                 lab.lessons.set_language(language)
             try:

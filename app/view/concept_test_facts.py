@@ -6,23 +6,27 @@ from dataclasses import dataclass
 
 from onpath.app.lab.lesson_state import LessonState
 from onpath.lessons.concept_test.concept_test import (
-    AFTER,
-    BEFORE,
+    SITTINGS,
     chosen_in,
-    notes_of,
+    handed_in,
     questions,
     right_in,
 )
-from onpath.lessons.schema import Lesson, Quiz
+from onpath.lessons.schema import Quiz
 
 
 @dataclass(frozen=True, slots=True)
 class AnsweredQuestion:
-    """A question and the options chosen before and after the course; None for no answer."""
+    """A question, and the option chosen each time that it was asked; None for no answer.
+
+    Attributes:
+        chosen: before the course or after it (a place in `SITTINGS`) -> index of the option.
+        treated: number of the lesson and of its step that treat it; None if that is not said.
+    """
 
     block: Quiz
-    before: int | None
-    after: int | None
+    chosen: dict[int, int | None]
+    treated: tuple[str, int] | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,34 +34,43 @@ class ConceptTestResults:
     """A student's results in the concept test.
 
     Attributes:
+        title: of the test.
         scores: number of right answers before and after the course; None if not handed in.
+        count: number of questions in each.
         questions: empty until the test after the course has been handed in.
     """
 
-    lesson: Lesson
+    title: str
     scores: tuple[int | None, int | None]
+    count: int
     questions: list[AnsweredQuestion]
-
-    @property
-    def count(self) -> int:
-        """Number of questions."""
-        return len(questions(self.lesson))
 
 
 def results_of(run: LessonState) -> ConceptTestResults | None:
     """A student's results; None if the course has no test, or none has been handed in."""
-    if not run.course.tests:
+    forms = run.course.forms(run.progress.language)
+    found = [handed_in(run.progress, sitting) for sitting in SITTINGS]
+    sat = [None if each is None or each[0] >= len(forms) else each for each in found]
+    if sat == [None, None]:
         return None
-    lesson = run.course.lesson(BEFORE, run.progress.language)
-    before, after = (notes_of(run.progress, name) for name in (BEFORE, AFTER))
-    if before is None and after is None:
-        return None
-    blocks = list(questions(lesson).values())
-    nothing: list[int | None] = [None] * len(blocks)
-    chosen = [chosen_in(lesson, notes) if notes else nothing for notes in (before, after)]
-    answered = [
-        AnsweredQuestion(block, chosen_before, chosen_after)
-        for block, chosen_before, chosen_after in zip(blocks, *chosen, strict=True)
-    ]
-    right = [sum(right_in(lesson, notes)) if notes else None for notes in (before, after)]
-    return ConceptTestResults(lesson, (right[0], right[1]), answered if after else [])
+    scores = [sum(right_in(forms[each[0]], each[1])) if each else None for each in sat]
+    numbers, answered = run.course.numbers(), list[AnsweredQuestion]()
+    chosen = {
+        place: (each[0], chosen_in(forms[each[0]], each[1]))
+        for place, each in enumerate(sat)
+        if each is not None
+    }
+    asked = [list(questions(form).values()) for form in forms]
+    for index in range(len(asked[0])):
+        for form in dict.fromkeys(form for form, _ in chosen.values()):
+            block = asked[form][index]
+            page = block.treated
+            times = {place: options[index] for place, (f, options) in chosen.items() if f == form}
+            treated = (numbers.get(page.lesson, ""), page.step) if page else None
+            answered.append(AnsweredQuestion(block, times, treated))
+    return ConceptTestResults(
+        title=forms[0].front.title,
+        scores=(scores[0], scores[1]),
+        count=len(asked[0]),
+        questions=answered if sat[1] else [],
+    )

@@ -20,7 +20,7 @@ from onpath.app.view.report_facts import (
     quizzes,
 )
 from onpath.app.view.step_navigation import RECORD, LessonButton, Sent
-from onpath.lessons.concept_test.concept_test import BEFORE
+from onpath.lessons.concept_test.concept_test import BEFORE, sitting_of
 from onpath.lessons.concept_test.on_route import last_test
 from onpath.lessons.concept_test.titles import titles_of_tests
 from onpath.lessons.given import Answer
@@ -194,12 +194,13 @@ def _test_end(run: LessonView) -> Markup:
     """Thanks and, after the second test, the right answers and why."""
     words, route = run.words, run.progress.route
     buttons = [LessonButton(words("end.record"), [RECORD])]
-    if run.progress.lesson == BEFORE and route in run.course.routes:
+    sitting = sitting_of(run.progress.lesson)
+    if sitting == BEFORE and route in run.course.routes:
         follow: Sent = {"do": "FollowRoute", "name": route}
         buttons = [LessonButton(words("route.follow"), [follow], main=True), *buttons]
     return part_of_page(
         "lesson/test_end.html",
-        title=titles_of_tests(run.course, words)[run.progress.lesson],
+        title=titles_of_tests(run.course, words)[sitting],
         results=results_of(run),
         buttons=buttons,
         words=words,

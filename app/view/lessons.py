@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from onpath.app.channel.sheet_messages import LessonCard, LessonSheet, RouteCard
 from onpath.app.lab.lesson_state import LessonState
-from onpath.lessons.concept_test.concept_test import AFTER, BEFORE
+from onpath.lessons.concept_test.concept_test import AFTER, BEFORE, sitting_of, taken
 from onpath.lessons.concept_test.titles import titles_of_tests
 from onpath.lessons.minutes import lesson_minutes
 from onpath.lessons.progress import Notes
@@ -18,7 +18,9 @@ def lesson_sheet(run: LessonState) -> LessonSheet:
     lessons = [lesson_card(run.course.lesson(n, language), run, numbers[n]) for n in numbers]
     before, after = (_test_cards(name, run) for name in (BEFORE, AFTER))
     routes = [_route_card(name, route, run) for name, route in run.course.routes.items()]
-    return LessonSheet(open=run.progress.lesson, lessons=[*before, *lessons, *after], routes=routes)
+    return LessonSheet(
+        open=sitting_of(run.progress.lesson), lessons=[*before, *lessons, *after], routes=routes
+    )
 
 
 def lesson_card(lesson: Lesson, run: LessonState, number: str) -> LessonCard:
@@ -53,7 +55,7 @@ def _test_cards(name: str, run: LessonState) -> list[LessonCard]:
     if name not in run.course.tests:
         return []
     words, lesson = run.words, run.course.lesson(name, run.words.language)
-    notes = run.progress.notes.get(name)
+    notes = run.progress.notes.get(taken(run.progress, name))
     handed_in = (notes or Notes()).handed_in
     minutes = words("lesson.minutes", minutes=lesson_minutes(lesson)[0])
     card = LessonCard(

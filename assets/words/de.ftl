@@ -275,18 +275,29 @@ test-chosen_after = Nachher:
 test-none = keine Antwort
 test-students = { $count ->
         [0] Noch hat niemand beide Tests abgegeben.
-        [one] 1 Person hat beide Tests abgegeben. In einer so kleinen Klasse lässt sich erraten, wer es ist.
+        [one] 1 Person hat beide Tests abgegeben.
        *[other] { $count } Personen haben beide Tests abgegeben.
     }
-test-means = Richtige Antworten: vorher { $before } %, nachher { $after } %.
+test-means = Richtige Antworten: vorher { $before }, nachher { $after }.
+test-share = { $value } % ({ $low } bis { $high })
+test-interval = { $value } ({ $low } bis { $high })
+test-fewest = Was sie dazugelernt hat, steht hier ab { $count } Personen: Bei weniger entscheidet der Zufall.
 test-gain = Normierter Lernzuwachs: { $gain }
-test-gain_means = Diesen Anteil dessen, was die Klasse vorher nicht wusste, hat sie gelernt: (nachher − vorher) / (100 % − vorher).
+test-gain_means = Diesen Anteil dessen, was die Klasse vorher nicht wusste, hat sie gelernt: (nachher − vorher) / (100 % − vorher). Jede Hälfte der Klasse hatte zuerst eine andere Form, und gemittelt wird über beide Formen; deshalb macht es nichts, wenn eine davon leichter ist.
 test-gain_none = Normierter Lernzuwachs: nicht definiert, denn vorher waren alle Antworten richtig.
 test-waiting = { $part } von { $all } haben den Test vor dem Kurs abgegeben, { $after } den danach.
 test-number = Nr.
 test-right_before = Vorher richtig
 test-right_after = Nachher richtig
 test-aims = Was die falschen Antworten sagen
+test-form = Form { $form }
+test-alone = Konzepttest: Jede Person antwortet für sich allein.
+test-treated = Mehr darüber: Lektion { $lesson }, Seite { $step }.
+test-of_form = Form { $form }: { $count } Personen
+test-of_questions = Die Fragen: { $count } Personen
+test-difficulty = Richtig
+test-discrimination = Trennschärfe
+test-intervals = In Klammern: das Intervall zu 95 %, bei Anteilen nach Wilson, sonst durch wiederholtes Ziehen aus der Klasse (Bootstrap). Die Trennschärfe ist die Korrelation zwischen einer richtigen Antwort und der Zahl der richtigen Antworten auf die anderen Fragen, unter denen, die die Form vor dem Kurs, und unter denen, die sie danach hatten. Nahe bei 0 unterscheidet die Frage niemanden; unter 0 führt sie gerade die in die Irre, die mehr wissen.
 class-title = Klasse
 class-code = Klassencode
 class-code_hint = Er steht auf der Leinwand
@@ -1061,7 +1072,12 @@ guide-why = Warum sie geht:
 guide-otherwise = Anders geschafft:
 guide-exploratory = durch Ausprobieren, ohne Wertung
 guide-test = Konzepttest
-guide-test_intro = Dieselben Fragen vor und nach dem Kurs. Öffne sie für die Klasse auf der Seite „Vorhersagen“; die Antworten werden erst verraten, wenn der zweite Test abgegeben ist, also besprich sie nicht vorher. Der normierte Lernzuwachs der Klasse steht dann auf derselben Seite und in der CSV-Datei, ohne Namen.
+guide-test_intro = Zwei Formen mit verschiedenen Fragen zu denselben Vorstellungen. Die eine Hälfte der Klasse hat Form A vor dem Kurs und Form B danach, die andere Hälfte umgekehrt; das entscheidet das Los. Öffne den Test für die Klasse auf der Seite „Vorhersagen“; die Lösungen werden erst verraten, wenn der zweite Test abgegeben ist, also besprich sie nicht vorher. Ab zwanzig Personen stehen auf derselben Seite und in der Aufzeichnung der Klasse der normierte Lernzuwachs und zu jeder Frage, wie schwer sie ist und wie gut sie unterscheidet, mit Intervallen und ohne Namen. Gemessen wurde noch niemand: Dass beide Formen gleich schwer sind und die Fragen etwas taugen, ist angenommen.
+guide-test_one = Dieselben Fragen vor und nach dem Kurs. Öffne sie für die Klasse auf der Seite „Vorhersagen“; die Lösungen werden erst verraten, wenn der zweite Test abgegeben ist, also besprich sie nicht vorher. Ab zwanzig Personen steht der normierte Lernzuwachs der Klasse dann auf derselben Seite und in der Aufzeichnung der Klasse, ohne Namen.
+guide-test_apart = Der Konzepttest und seine Lösungen stehen nicht in dieser Anleitung, damit man sie weitergeben kann: `onpath lessons guide --concept-test` fügt sie hinzu. Gemessen wurde mit diesem Test noch niemand.
+guide-treated = Behandelt in:
+guide-page = Lektion { $lesson }, Seite { $step }
+guide-transfer = über andere Körper als die der Lektionen
 guide-aims = Zielt auf die Vorstellung:
 guide-at = bei { $time } s: { $what }
 guide-pull = um { $right } mm nach rechts und { $up } mm nach oben ziehen

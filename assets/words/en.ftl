@@ -277,18 +277,29 @@ test-chosen_after = After:
 test-none = no answer
 test-students = { $count ->
         [0] Nobody has handed in both tests yet.
-        [one] 1 student has handed in both tests. In a class this small, others may guess who it is.
+        [one] 1 student has handed in both tests.
        *[other] { $count } students have handed in both tests.
     }
-test-means = Right answers: { $before } % before, { $after } % after.
+test-means = Right answers: { $before } before, { $after } after.
+test-share = { $value } % ({ $low } to { $high })
+test-interval = { $value } ({ $low } to { $high })
+test-fewest = What it has gained is shown from { $count } students on: with fewer, chance decides.
 test-gain = Normalised gain: { $gain }
-test-gain_means = The class has learned this share of what it did not know before: (after − before) / (100 % − before).
+test-gain_means = The class has learned this share of what it did not know before: (after − before) / (100 % − before). Each half of the class has answered the other form first, and the means are those of both forms, so it does not matter if one form is easier.
 test-gain_none = Normalised gain: not defined, since all answers were right before.
 test-waiting = { $part } of { $all } have handed in the test before the course, { $after } the one after it.
 test-number = No.
 test-right_before = Right before
 test-right_after = Right after
 test-aims = What the wrong answers say
+test-form = Form { $form }
+test-alone = Concept test: each student answers alone.
+test-treated = More about it: lesson { $lesson }, page { $step }.
+test-of_form = Form { $form }: { $count } students
+test-of_questions = The questions: { $count } students
+test-difficulty = Right
+test-discrimination = Discrimination
+test-intervals = In brackets: the interval of 95 %, Wilson's for shares, a bootstrap of the students for the other numbers. Discrimination is the correlation of an answer with the number of right answers to the other questions, among those who answered the form before the course and among those who answered it after. Near 0 the question does not tell students apart; below 0 it misleads those who know more.
 class-title = Class
 class-code = Class code
 class-code_hint = Shown on the projector
@@ -938,7 +949,12 @@ guide-why = Why it works:
 guide-otherwise = Passed otherwise:
 guide-exploratory = found by trying, not graded
 guide-test = Concept test
-guide-test_intro = The same questions before and after the course. Open them for the class on the page “Predictions”; the answers are shown when the second test is handed in, so do not discuss them before. The class's normalised gain is then on the same page and in the class record, without names.
+guide-test_intro = Two forms with other questions about the same beliefs. Half of the class answers form A before the course and form B after it, the other half the other way round; that is dealt by chance. Open the test for the class on the page “Predictions”; the answers are shown when the second one is handed in, so do not discuss them before. From twenty students on, the class's normalised gain, and how hard each question is and how well it tells students apart, are on the same page and in the class record, with intervals and without names. No student has been measured yet: that the two forms are equally hard, and that the questions work, is assumed.
+guide-test_one = The same questions before and after the course. Open them for the class on the page “Predictions”; the answers are shown when the second test is handed in, so do not discuss them before. The class's normalised gain is then, from twenty students on, on the same page and in the class record, without names.
+guide-test_apart = The concept test and its answers are not in this guide, so that the guide may be passed on: `onpath lessons guide --concept-test` adds them. No student has been measured with this test yet.
+guide-treated = Treated in:
+guide-page = lesson { $lesson }, page { $step }
+guide-transfer = about other bodies than those of the lessons
 guide-aims = Aims at the belief:
 guide-at = at { $time } s: { $what }
 guide-pull = pull by { $right } mm to the right and { $up } mm up

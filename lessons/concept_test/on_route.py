@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from onpath.lessons.concept_test.concept_test import AFTER, BEFORE
+from onpath.lessons.concept_test.concept_test import AFTER, BEFORE, taken
 from onpath.lessons.course import Course
 from onpath.lessons.progress import Notes, Progress
 from onpath.lessons.routes import Route
@@ -22,5 +22,5 @@ def last_test(route: Route | None, course: Course, progress: Progress) -> str:
 
 def _is_left(name: str, route: Route, course: Course, progress: Progress) -> bool:
     """Whether a test belongs to a route and has not been handed in."""
-    notes = progress.notes.get(name, Notes())
+    notes = progress.notes.get(taken(progress, name), Notes())
     return route.test and name in course.tests and not notes.handed_in

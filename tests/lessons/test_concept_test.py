@@ -1,91 +1,95 @@
-"""The concept test as it is written, and the gain of a class."""
+"""The concept test as it is written in two forms, and which of them a student gets."""
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Sequence
+import re
 from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from markupsafe import Markup
-from msgspec.structs import replace
 
 from onpath.lessons.concept_test.concept_test import (
     AFTER,
     BEFORE,
-    FOLDER,
-    TESTS,
-    both_tests,
+    FOLDERS,
+    SITTINGS,
+    both_sittings,
+    dealt,
+    dealt_in_class,
+    form_of,
+    handed_in,
+    name_of,
+    own_test,
     questions,
     right_in,
+    sitting_of,
 )
-from onpath.lessons.concept_test.gain import class_gain, normalised_gain
 from onpath.lessons.course import BUILT_IN, Course, read_course
 from onpath.lessons.parse import read_lesson
 from onpath.lessons.problems import LessonError
 from onpath.lessons.progress import Notes, Progress
-from onpath.lessons.schema import Lesson
 from tests.support.built_in import built_in_course
 from tests.support.given import notes_with
 
 COURSE, PROBLEMS = built_in_course()
-TEST = COURSE.lesson(BEFORE, "en")
+NAMES = [name_of(sitting, form) for form in (0, 1) for sitting in SITTINGS]
 FRONT = '+++\ntitle = "A"\nsummary = "B"\n+++\n\n'
 ITEM = """# quiz: One
 
 ```quiz
+misconception = "It is not."
 question = "Is it?"
 options = [{ text = "Yes", right = true, answer = "So." }, { text = "No", answer = "Not so." }]
 ```
 """
-answers = st.lists(st.booleans(), min_size=len(questions(TEST)), max_size=len(questions(TEST)))
+OF_THE_LESSONS = {
+    "en": r"tracker|follower|\bpaths?\b|\bclocks?\b|timetable|invarian|zero dynamics|\brank\b"
+    r"|\boutputs?\b|\barms?\b|robot|\btubes?\b|\bgains?\b|feedback|lineari[sz]|reference",
+    "de": r"nachläufer|bahn|\buhr\b|fahrplan|invarian|nulldynamik|\brang\b|ausgang|ausgänge"
+    r"|\barme?s?\b|roboter|schlauch|verstärkung|rückführ|lineari|sollpunkt",
+}
+"""Words by which somebody who has heard the lessons would know what is meant."""
 
 
-def handed_in(test: Lesson, right: Sequence[bool]) -> Notes:
-    """Notes on a test in which some questions are answered rightly, and the others wrongly."""
-    chosen = {
-        key: next(i for i, option in enumerate(block.options) if option.right == good)
-        for (key, block), good in zip(questions(test).items(), right, strict=True)
-    }
-    return notes_with(quiz=chosen, handed_in=True)
-
-
-def both(before: Sequence[bool], after: Sequence[bool]) -> Progress:
-    """A student who has handed in both tests."""
-    return Progress(notes={BEFORE: handed_in(TEST, before), AFTER: handed_in(TEST, after)})
-
-
-def test_there_are_twelve_questions_one_for_each_misconception_in_every_language() -> None:
-    assert not PROBLEMS and list(COURSE.tests) == list(TESTS)
-    assert not set(TESTS) & set(COURSE.lessons)
-    for name in TESTS:
+def test_each_form_asks_about_the_same_twelve_beliefs_in_every_language() -> None:
+    assert not PROBLEMS and list(COURSE.tests) == NAMES
+    assert not set(NAMES) & set(COURSE.lessons)
+    for name in NAMES:
         assert set(COURSE.tests[name]) == set(COURSE.languages())
-        for test in COURSE.tests[name].values():
-            asked = questions(test).values()
-            assert test.name == name and len(asked) == 12
-            assert len({block.misconception for block in asked} - {""}) == 12
-            assert all(len(block.options) == 4 for block in asked)
-            assert len({option.text for block in asked for option in block.options}) == 48
+    for language in COURSE.languages():
+        asked = [list(questions(form).values()) for form in COURSE.forms(language)]
+        beliefs = [[block.misconception for block in form] for form in asked]
+        assert beliefs[0] == beliefs[1] and len(set(beliefs[0]) - {""}) == 12
+        for form in asked:
+            assert all(len(block.options) == 4 for block in form)
+            assert len({option.text for block in form for option in block.options}) == 48
+        pages = [[block.treated for block in form] for form in asked]
+        assert pages[0] == pages[1] and None not in pages[0]
 
 
 @pytest.mark.parametrize("language", COURSE.languages())
-def test_no_rule_of_thumb_finds_the_right_answers(language: str) -> None:
-    """Every place is right three times; the longest or shortest option is not mostly right."""
-    found: Counter[object] = Counter()
-    asked = questions(COURSE.lesson(BEFORE, language)).values()
-    for block in asked:
-        sizes = [len(Markup(option.text).striptags()) for option in block.options]
-        for place, option in enumerate(block.options):
-            rules = (place, *(most for most in (max, min) if sizes[place] == most(sizes)))
-            found.update(rules if option.right else ())
-    assert [found[place] for place in range(4)] == [3] * 4
-    assert found[max] <= 4 and found[min] <= 4, found
+def test_half_of_each_form_is_about_other_bodies_without_a_word_of_the_lessons(
+    language: str,
+) -> None:
+    first, second = (list(questions(form).values()) for form in COURSE.forms(language))
+    known = re.compile(OF_THE_LESSONS[language], re.IGNORECASE)
+    for one, other in zip(first, second, strict=True):
+        assert one.transfer != other.transfer
+        for block in (one, other):
+            texts = [Markup(each).striptags() for each in (block.question, *_texts(block.options))]
+            words = [word for text in texts for word in known.findall(text)]
+            assert bool(words) != block.transfer, (block.question, words)
+    assert sum(block.transfer for block in first) == len(first) / 2
+
+
+def _texts(options: tuple[object, ...]) -> list[str]:
+    return [getattr(option, "text") for option in options]  # noqa: B009
 
 
 def test_a_test_has_questions_only(tmp_path: Path) -> None:
-    file = tmp_path / FOLDER / "en.md"
+    file = tmp_path / FOLDERS[0] / "en.md"
     file.parent.mkdir()
     file.write_text(FRONT + ITEM, "utf-8")
     assert len(questions(read_lesson(file))) == 1
@@ -96,53 +100,79 @@ def test_a_test_has_questions_only(tmp_path: Path) -> None:
             read_lesson(file)
 
 
+def written(folder: Path, *forms: str) -> Path:
+    """A course with nothing but some forms of a test, in order."""
+    for name, items in zip(FOLDERS, forms, strict=False):
+        (folder / name).mkdir()
+        (folder / name / "en.md").write_text(FRONT + items, "utf-8")
+    return folder
+
+
+def test_a_second_form_has_as_many_questions_about_the_same_beliefs(tmp_path: Path) -> None:
+    for at, (second, fault) in enumerate(
+        {
+            ITEM: "",
+            ITEM + ITEM: "2 questions, and 1 in the first form",
+            ITEM.replace("It is not", "It is"): "not the misconception of 'One'",
+            ITEM.replace("question", 'treated = { lesson = "a", step = 1 }\nquestion'): "no step 1",
+        }.items()
+    ):
+        (tmp_path / str(at)).mkdir()
+        course, problems = read_course([written(tmp_path / str(at), ITEM, second)])
+        assert list(course.tests) == NAMES
+        assert [fault in problem.text for problem in problems] == [True] * bool(fault), problems
+    (tmp_path / "alone" / FOLDERS[1]).mkdir(parents=True)
+    (tmp_path / "alone" / FOLDERS[1] / "en.md").write_text(FRONT + ITEM, "utf-8")
+    (problem,) = read_course([tmp_path / "alone"])[1]
+    assert "no first form" in problem.text
+
+
 @pytest.mark.thorough
 def test_a_course_may_have_a_test_of_its_own_or_none(tmp_path: Path) -> None:
-    (tmp_path / FOLDER).mkdir()
-    (tmp_path / FOLDER / "en.md").write_text(FRONT + ITEM, "utf-8")
-    course, problems = read_course([BUILT_IN, tmp_path])
-    assert not problems and len(questions(course.lesson(AFTER, "en"))) == 1
-    assert both_tests({}) == {} and not Course({}).has(BEFORE)
+    course, problems = read_course([BUILT_IN, written(tmp_path, ITEM)])
+    assert not problems and list(course.tests) == list(SITTINGS)
+    assert len(questions(course.lesson(AFTER, "en"))) == 1
+    assert both_sittings([]) == {} and not Course({}).has(BEFORE) and Course({}).forms("en") == []
 
 
-# The gain.
+# Which form.
 
 
-@given(st.floats(0, 99.9), st.floats(0, 100))
-def test_the_gain_is_the_learned_part_of_what_was_not_known(before: float, after: float) -> None:
-    gain = normalised_gain(before, after)
-    assert gain is not None and gain <= 1.0 + 1e-9
-    assert before + gain * (100 - before) == pytest.approx(after, abs=1e-9)
-    assert (gain > 0) == (after > before)
+@given(st.text(max_size=12), st.integers(0, 12))
+def test_half_of_a_class_gets_each_form_first(code: str, pairs: int) -> None:
+    first = [dealt_in_class(code, number) for number in range(1, 2 * pairs + 1)]
+    assert sum(first) == pairs
+    assert all(a != b for a, b in zip(first[::2], first[1::2], strict=True))
 
 
-def test_nothing_can_be_gained_by_those_who_know_all() -> None:
-    assert normalised_gain(100.0, 100.0) is None and normalised_gain(None, 50.0) is None
+def test_either_form_is_as_likely_in_a_class_and_alone() -> None:
+    for deal in (lambda n: dealt(f"{n}"), lambda n: dealt_in_class(f"{n}", 1)):
+        found = [deal(n) for n in range(400)]
+        assert abs(sum(found) - 200) < 4 * 10  # four standard deviations
 
 
-@given(st.lists(st.tuples(answers, answers), min_size=1, max_size=5))
-def test_the_class_s_means_are_those_of_its_students(
-    ways: list[tuple[list[bool], list[bool]]],
-) -> None:
-    found = class_gain(TEST, [both(*way) for way in ways])
-    assert found.students == len(ways)
-    for place, mean in enumerate((found.mean_before, found.mean_after)):
-        right = [each for way in ways for each in way[place]]
-        assert mean == pytest.approx(100 * sum(right) / len(right))
-    assert found.gain == normalised_gain(found.mean_before, found.mean_after)
+@given(st.integers(0, 1), st.lists(st.sampled_from([*NAMES, "01-a"]), min_size=1, max_size=6))
+def test_a_student_gets_each_form_once_and_keeps_it(first: int, opened: list[str]) -> None:
+    progress, got = Progress(), dict[str, str]()
+    for name in opened:
+        own = own_test(name, NAMES, progress, first)
+        assert sitting_of(own) == sitting_of(name)
+        assert got.setdefault(sitting_of(name), own) == own
+        progress = Progress(notes={**progress.notes, own: Notes()})
+    forms = {form_of(own) for sitting, own in got.items() if sitting in SITTINGS}
+    assert len(forms) == len(set(got) & set(SITTINGS))
+    assert got.get(BEFORE, name_of(BEFORE, first)) == name_of(BEFORE, first)
+    assert own_test(opened[0], SITTINGS, progress, first) == sitting_of(opened[0])
 
 
-def test_only_students_who_handed_in_both_count_and_a_missing_answer_is_wrong() -> None:
-    all_right, none = [True] * 12, [False] * 12
-    half = Progress(notes={BEFORE: handed_in(TEST, none)})
-    open_still = both(none, all_right)
-    after = replace(open_still.notes[AFTER], handed_in=False)
-    open_still = replace(open_still, notes={**open_still.notes, AFTER: after})
-    nothing = class_gain(TEST, [half, open_still, Progress()])
-    assert (nothing.students, nothing.gain, nothing.mean_before) == (0, None, None)
-    found = class_gain(TEST, [half, both(none, all_right)])
-    assert (found.students, found.mean_before, found.mean_after, found.gain) == (1, 0, 100, 1)
-    empty = Notes(handed_in=True)
-    assert right_in(TEST, empty) == none
-    gone = notes_with(quiz={"0.1": 99, "77.0": 0}, handed_in=True)  # of another version of the test
-    assert right_in(TEST, gone) == none
+def test_a_missing_answer_is_wrong_and_one_to_another_version_unknown() -> None:
+    form, none = COURSE.forms("en")[0], [False] * 12
+    assert right_in(form, Notes(handed_in=True)) == none
+    gone = notes_with(quiz={"0.1": 99, "77.0": 0}, handed_in=True)
+    assert right_in(form, gone) == none
+    for sitting in SITTINGS:
+        for at in (0, 1):
+            done = Progress(notes={name_of(sitting, at): Notes(handed_in=True)})
+            assert handed_in(done, sitting) == (at, Notes(handed_in=True))
+        assert handed_in(Progress(notes={sitting: Notes()}), sitting) is None
+        assert handed_in(Progress(), sitting) is None

@@ -19,6 +19,7 @@ def exported_site(
     whole = built_in_course()
     course = Course(
         {name: whole.lessons[name] for name in lessons if name != LECTURE},
+        tests=whole.tests,
         lecture=whole.lecture if LECTURE in lessons else {},
     )
     write_site(folder / "site", course, BUILT_IN, languages)

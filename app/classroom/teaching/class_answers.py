@@ -27,7 +27,7 @@ from onpath.app.classroom.teaching.lesson_labels import step_label
 from onpath.app.classroom.teaching.steps_for_all import StepsForAll
 from onpath.app.classroom.teaching.teacher_context import TeacherChoices
 from onpath.app.lab.dry_runs.step_truth import computed_truth
-from onpath.lessons.concept_test.concept_test import TESTS
+from onpath.lessons.concept_test.concept_test import FORMS, SITTINGS
 from onpath.lessons.course import Course
 from onpath.lessons.given import Given
 from onpath.lessons.kept.known_choices import of_today
@@ -45,9 +45,10 @@ NOTHING = Notes()
 
 @dataclass(frozen=True, slots=True)
 class Students:
-    """The members of a class who count: their progress, and whether each is here."""
+    """The members of a class who count: who each is, see `people`, and whether they are here."""
 
     members: list[Member]
+    who: list[str]
     progress: list[Progress]
     here: list[bool]
 
@@ -123,7 +124,7 @@ class ClassAnswers:
             return self._asked(lesson, index, large)
         students = self._students()
         if name in self._course.tests:
-            return self._test(lesson, index, students.progress, large)
+            return self._test(lesson, index, students, large)
         views = list[str]()
         for item, block in asked_at(lesson, index).items():
             if isinstance(block, Quiz | NumberQuestion):
@@ -136,9 +137,11 @@ class ClassAnswers:
         return "".join(views) or page.step_view(title, self._words("class.no_prediction"), large)
 
     def _students(self) -> Students:
-        members = list(self._teaching.classroom.present().values())
+        present = self._teaching.classroom.present()
+        members = list(present.values())
         return Students(
             members,
+            [member.word or lab for lab, member in present.items()],
             [of_today(self._course, member.progress) for member in members],
             [member.connected for member in members],
         )
@@ -219,7 +222,7 @@ class ClassAnswers:
         """What the step asks, or the question of a test."""
         words, blocks = self._words, asked_at(lesson, index).values()
         if lesson.name in self._course.tests:
-            return page.hidden_view(question_at(lesson, index), None, words, large)
+            return page.step_view(words("test.alone"), "", large)
         views = [page.hidden_view(block, None, words, large) for block in blocks]
         return "".join(views) or page.step_view(step_label(lesson, index, words), "", large)
 
@@ -239,18 +242,27 @@ class ClassAnswers:
             return None, ""
         return (ceil(left), "") if left > 0 else (None, self._words("class.closed"))
 
-    def _test(self, test: Lesson, index: int, students: list[Progress], large: bool) -> str:
-        """A question of the test, answered before and after the course, and the class's gain."""
-        words, display, question = self._words, self._display, question_at(test, index)
-        rounds = [
-            (words(title), item_distribution(test, index, name, students))
-            for name, title in zip(TESTS, ("test.before", "test.after"), strict=True)
-        ]
-        if display.shown:
-            asked = page.choices_view(question, rounds, display.revealed, words, large)
-        else:
-            asked = page.hidden_view(question, rounds[TESTS.index(test.name)][1], words, large)
-        return gain_view(test, students, display.revealed, words, large) + asked
+    def _test(self, test: Lesson, index: int, students: Students, large: bool) -> str:
+        """A question of the test in each of its forms, answered before and after the course, and
+        the class's gain."""
+        words, display, forms = self._words, self._display, self._course.forms(self._words.language)
+        known = list(zip(students.who, students.progress, strict=True))
+        views = [gain_view(forms, known, display.revealed, words, large)]
+        for form, lesson in enumerate(forms):
+            question = question_at(lesson, index)
+            rounds = [
+                (words(title), item_distribution(forms, form, index, sitting, known))
+                for sitting, title in zip(SITTINGS, ("test.before", "test.after"), strict=True)
+            ]
+            if len(forms) > 1:
+                views.append(page.step_view(words("test.form", form=FORMS[form]), "", large))
+            if display.shown:
+                shown = page.choices_view(question, rounds, display.revealed, words, large)
+            else:
+                now = rounds[SITTINGS.index(test.name)][1]
+                shown = page.hidden_view(question, now, words, large)
+            views.append(shown)
+        return "".join(views)
 
     def _question(
         self,

@@ -28,7 +28,6 @@ from onpath.app.classroom.teaching.teacher_form import PREFIX
 from onpath.app.lab.commands import CloseLesson, Set, TakeSetup, TakeStep
 from onpath.app.lab.lab import Command
 from onpath.app.lab.setups.share_code import decode
-from onpath.lessons.concept_test.concept_test import BEFORE
 from onpath.lessons.course import Course
 from onpath.lessons.kept.known_choices import of_today
 from onpath.lessons.pace import Pace
@@ -339,9 +338,9 @@ class TeacherOrders:
             for lab, member in self._class.members().items()
         }
         students = [(lab, member.progress) for lab, member in members.items()]
-        test = course.lesson(BEFORE, language) if course.tests else None
+        forms = course.forms(language)
         words = {lab: member.word for lab, member in members.items()}
-        more = sheets_without_names(test, students, self._class.code, words) if test else []
+        more = sheets_without_names(forms, students, self._class.code, words) if forms else []
         grades = grade_sheet(members.values(), course, language, self._class.state.asks)
         more += [] if grades is None else [grades]
         votes = self._class.votes

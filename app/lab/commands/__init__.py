@@ -1,6 +1,7 @@
 """Commands to a lab: frozen records with an `apply` method."""
 
 from onpath.app.lab.commands.classroom import (
+    DealForm,
     DemonstrateStep,
     Freeze,
     HoldVotes,
@@ -80,6 +81,7 @@ __all__ = [
     "ChooseRobot",
     "CloseLesson",
     "Command",
+    "DealForm",
     "DemonstrateStep",
     "DragJoint",
     "DrawPath",

@@ -71,7 +71,7 @@ class TakeStep(Command):
     @override
     def apply(self, lab: Lab) -> None:
         run = lab.lessons
-        elsewhere = run.lesson is not None and run.progress.lesson != self.lesson
+        elsewhere = run.lesson is not None and run.progress.lesson != run.own(self.lesson)
         run.open_at(self.lesson, self.step, lab, self.route)
         key = "class.step_elsewhere" if elsewhere else "class.step"
         if self.again:
@@ -114,6 +114,18 @@ class KeepWithin(Command):
             run.open_at(self.pace.lesson, self.pace.first, lab)
             lab.show_message(run.words("class.step"))
         _tell(lab)
+
+
+@dataclass(frozen=True, slots=True)
+class DealForm(Command):
+    """Give the student a form of the concept test, by its index, to answer before the course."""
+
+    from_teacher: ClassVar[bool] = True
+    form: int
+
+    @override
+    def apply(self, lab: Lab) -> None:
+        lab.lessons.first_form = self.form
 
 
 @dataclass(frozen=True, slots=True)

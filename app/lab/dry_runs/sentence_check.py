@@ -23,7 +23,7 @@ from onpath.lessons.behaviour.sentences import (
     list_faults,
     read_sentences,
 )
-from onpath.lessons.concept_test.concept_test import FOLDER
+from onpath.lessons.concept_test.concept_test import FOLDERS, form_of
 from onpath.lessons.course import BUILT_IN, Course
 from onpath.lessons.problems import Problem
 from onpath.lessons.text_files import read_text
@@ -53,7 +53,7 @@ def sentence_faults(course: Course, folder: Path, loop_cache: LoopCache) -> Iter
     for (where, language), (file, text) in texts.items():
         for line, fault in list_faults(listed, where, language, text, _of_law(where)):
             yield Problem(file, line, fault)
-        if where not in (*course.played, FOLDER):
+        if where not in (*course.played, *FOLDERS):
             yield from (Problem(file, *fault) for fault in name_faults(text, language))
     for each in listed:
         if fault := _fault(each, loop_cache):
@@ -74,8 +74,8 @@ def _of_law(where: str) -> bool:
 
 def _texts(course: Course, folder: Path) -> Iterator[tuple[tuple[str, str], tuple[str, str]]]:
     """Name and language of each text, with its file and its words."""
-    names = {**{name: name for name in course.played}, **{name: FOLDER for name in course.tests}}
-    for home in dict.fromkeys(names.values()):
+    homes = [*course.played, *(FOLDERS[form_of(name)] for name in course.tests)]
+    for home in dict.fromkeys(homes):
         for file in sorted((folder / home).glob("??.md")):
             yield (home, file.stem), (str(file), read_text(file))
     if folder != BUILT_IN:

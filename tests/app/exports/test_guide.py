@@ -16,7 +16,7 @@ from onpath.app.lab.dry_runs.step_truth import computed_truth
 from onpath.assets.messages import languages
 from onpath.lessons.action_schema import Action, Laws, Script
 from onpath.lessons.action_words import script_words
-from onpath.lessons.concept_test.concept_test import BEFORE, questions
+from onpath.lessons.concept_test.concept_test import questions
 from onpath.lessons.course import BUILT_IN, Course
 from onpath.lessons.progress import Truth
 from onpath.lessons.schema import (
@@ -33,6 +33,7 @@ from onpath.lessons.task_schema import Task
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.systems.catalogue import FIVE_BAR
 from tests.support.built_in import built_in_course
+from tests.support.concept_key import found_in, key_of
 from tests.support.lesson_texts import LESSON, REFERENCE, write_lesson
 
 pytestmark = pytest.mark.thorough
@@ -69,9 +70,13 @@ def asked(name: str, language: str) -> Iterator[tuple[str, Block]]:
                 yield f"{name}.{index}.{place}", block
 
 
-def concept_questions(language: str) -> list[Quiz]:
-    """The questions of the concept test."""
-    return list(questions(course().lesson(BEFORE, language)).values())
+def concept_questions(language: str) -> dict[str, Block]:
+    """The questions of the concept test, by key."""
+    return {
+        f"test-{letter}.{at}": block
+        for letter, form in zip("AB", course().forms(language), strict=True)
+        for at, block in enumerate(questions(form).values())
+    }
 
 
 def texts(block: Block) -> list[str]:
@@ -95,17 +100,21 @@ def texts(block: Block) -> list[str]:
 @in_every_language
 @pytest.mark.usefixtures("computed_once")
 def test_the_guide_has_every_question_once_with_its_answer(language: str) -> None:
-    page = guide(course(), BUILT_IN, course().lessons, Words(language))
+    page = guide(course(), BUILT_IN, course().lessons, Words(language), test=True)
     assert page.count("<main>") == page.count("<h1>") == 1
     articles = ARTICLE.findall(page)
     every = {key: block for name in course().lessons for key, block in asked(name, language)}
-    every |= {f"test.{i}": block for i, block in enumerate(concept_questions(language))}
+    tests = concept_questions(language)
+    every |= tests
     assert [key for key, _ in articles] == list(every)
     for key, article in articles:
         for text in texts(every[key]):
             assert text in article, (key, text)
         if isinstance(every[key], Task):
             assert re.search(r'<ol class="solution">\s*<li>', article), key
+    without = guide(course(), BUILT_IN, course().lessons, Words(language))
+    assert [key for key, _ in ARTICLE.findall(without)] == list(every)[: -len(tests)]
+    assert found_in([*key_of(course().forms(language))], without) == []
     for name in course().lessons:
         front = course().lesson(name, language).front
         assert page.count(f'data-lesson="{name}"') == 1

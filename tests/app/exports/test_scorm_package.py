@@ -12,6 +12,8 @@ from onpath.app.cli.main import run_command
 from onpath.app.common.templates import render
 from onpath.app.exports.site.pages import Version
 from onpath.app.exports.site.scorm_package import MANIFEST, TEMPLATES
+from onpath.app.server.built_in_course import built_in_course
+from tests.support.concept_key import asked_in, found_in, key_of
 from tests.support.site_export import LESSON
 
 PARTS = {
@@ -56,6 +58,10 @@ def test_the_manifest_names_every_file_and_the_page(tmp_path: Path, version: Ver
     (organization,) = manifest.iter(f"{part}organization")
     (organizations,) = manifest.iter(f"{part}organizations")
     assert organizations.get("default") == organization.get("identifier")
+    forms = built_in_course().forms("de")
+    for name in package.namelist():
+        text = package.read(name).decode("utf-8", "replace")
+        assert found_in([*key_of(forms), *asked_in(forms)], text) == [], name
     page = package.read(str(resource.get("href"))).decode()
     assert f'"scorm":{{"version":"{version}","partial":false}}' in page and "index.html" not in page
     again = tmp_path / "again.zip"

@@ -23,6 +23,7 @@ from onpath.lessons.schema import Text
 from onpath.lessons.words import ENGLISH
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.flexible_robot import BENT
+from tests.support.concept_key import asked_in, found_in, key_of
 from tests.support.site_export import LESSON, exported_site
 
 pytestmark = pytest.mark.thorough
@@ -64,6 +65,14 @@ class Seen(HTMLParser):
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return exported_site(tmp_path_factory.mktemp("site"), lessons=(LESSON, LECTURE))
+
+
+def test_the_concept_test_is_not_in_it(site: Path) -> None:
+    for language in ("en", "de"):
+        forms = built_in_course().forms(language)
+        for file in filter(Path.is_file, site.rglob("*")):
+            text = file.read_bytes().decode("utf-8", "replace")
+            assert found_in([*key_of(forms), *asked_in(forms)], text) == [], file
 
 
 @pytest.mark.parametrize("language", ["en", "de"])

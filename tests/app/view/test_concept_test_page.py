@@ -11,7 +11,14 @@ from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
 from onpath.app.server.server_options import ServerOptions
-from onpath.lessons.concept_test.concept_test import AFTER, BEFORE, questions
+from onpath.lessons.concept_test.concept_test import (
+    AFTER,
+    BEFORE,
+    dealt,
+    name_of,
+    questions,
+    sitting_of,
+)
 from onpath.lessons.option_order import option_order
 from onpath.lessons.words import ENGLISH
 from tests.support import waiting
@@ -46,7 +53,10 @@ def test_both_tests_are_in_the_overview_and_open_from_it(
     for card, name, key in ((first, BEFORE, "before"), (last, AFTER, "after")):
         assert card["title"] == ENGLISH(f"test.title_{key}", title=TEST.front.title)
         student.tell({"do": "OpenLesson", "name": card["name"]})
-        wait_for(lambda name=name: lab.lessons.progress.lesson == name)
+        wait_for(lambda name=name: sitting_of(lab.lessons.progress.lesson) == name)
+    forms = {name_of(BEFORE, dealt(student.code)), name_of(AFTER, 1 - dealt(student.code))}
+    assert forms <= set(lab.lessons.progress.notes)
+    assert student.ask("lessons")["open"] == AFTER
 
 
 @pytest.mark.thorough
@@ -55,8 +65,9 @@ def test_a_student_answers_is_told_nothing_and_hands_in(
 ) -> None:
     lab = wait_for(lambda: server.registry.find(student.code)).scheduled.lab
     lab.post(TakeStep(BEFORE, 11))
-    block = questions(TEST)["11.0"]
-    order = option_order(4, f"{BEFORE} 11.0", student.code)
+    name = name_of(BEFORE, dealt(student.code))
+    block = questions(COURSE.lesson(name, "en"))["11.0"]
+    order = option_order(4, f"{name} 11.0", student.code)
     wrong = next(place for place, at in enumerate(order) if not block.options[at].right)
     student.read(lambda: student.sees(str(block.question)))
     student.tell({"do": "AnswerQuiz", "block": 0, "option": order[wrong]})
