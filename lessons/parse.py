@@ -290,7 +290,7 @@ class _Reader:
 
     def _quiz_faults(self, quiz: Quiz) -> Iterator[str]:
         yield from choice_faults(quiz)
-        if quiz.second is not None and self._folder == FOLDER:
+        if quiz.second is not None and self._folder in FOLDERS:
             yield "second: the concept test asks everything once"
 
     def _fold(self, draft: _Draft, title: str, content: str, line: int) -> None:
