@@ -21,6 +21,7 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.lessons.concept_test.concept_test import AFTER, BEFORE, SITTINGS, name_of, questions
 from onpath.lessons.concept_test.estimates import FEWEST
+from onpath.lessons.concept_test.gain import class_gain, people
 from onpath.lessons.pace import Pace
 from onpath.lessons.progress import Notes, Progress
 from onpath.lessons.words import ENGLISH
@@ -165,3 +166,22 @@ def test_a_class_gets_each_form_by_halves_and_is_kept_in_both() -> None:
         do(lab, c.KeepWithin(None), c.FinishLesson(), c.TakeStep(AFTER, 0))
         other = name_of(AFTER, 0 if name_of(BEFORE, 1) in lab.lessons.progress.notes else 1)
         assert lab.lessons.progress.lesson == other, code
+
+
+def test_the_labs_of_a_student_with_a_word_are_one_student() -> None:
+    room, labs = Classroom(), {f"{n:012}": Lab(loop_cache(), FIVE_BAR, COURSE) for n in range(6)}
+    sync = ClassSync(room, lambda code: (labs[code], True))
+    for n, code in enumerate(labs):
+        room.join(code, room.code, code)
+        room.link(code, f"a long word {n % 3}")  # two labs of each of three students
+    for sitting, part in ((BEFORE, list(labs)[:3]), (AFTER, list(labs)[3:])):
+        for _ in range(2):
+            sync.check()
+            for lab in labs.values():
+                do(lab)
+        for code in part:
+            do(labs[code], c.TakeStep(sitting, 0), c.FinishLesson())
+    sync.check()
+    who = [(member.word, member.progress) for member in room.members().values()]
+    known = people(FORMS, who)
+    assert len(known) == 3 and class_gain(FORMS, known).students == 3
