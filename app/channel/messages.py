@@ -27,6 +27,7 @@ from onpath.app.channel.file_messages import (
 from onpath.app.channel.form_messages import AskForm, FormMessage, SetField, ValuesMessage
 from onpath.app.channel.lesson_messages import LessonMessage, MeasuredMessage
 from onpath.app.channel.motion_messages import FrameMessage, LogMessage, PathMessage, Plot
+from onpath.app.channel.plant_messages import DrivePlant
 from onpath.app.channel.sheet_messages import (
     ClassMessage,
     Compared,
@@ -66,6 +67,7 @@ class Hello(
         plain: whether it draws in software, so that the scene must be quickly drawn.
         upright: whether its window is so; letters in the scene are larger then.
         speaks, sounds, first_minute: see `Store`.
+        drives: the key of the page that drives a plant, as its address had it.
     """
 
     page: Annotated[str, Meta(pattern="^[0-9a-f]{32,64}$")]
@@ -78,6 +80,7 @@ class Hello(
     speaks: Kept = ""
     sounds: Kept = ""
     first_minute: Kept = ""
+    drives: Kept = ""
 
 
 class Seen(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="seen"):
@@ -119,6 +122,7 @@ PageMessage = (
     | DropFile
     | MakeFile
     | Lead
+    | DrivePlant
     | Request
 )
 """What a page sends besides commands; `Hello` comes first, and only once."""

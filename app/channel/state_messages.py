@@ -7,6 +7,8 @@ from typing import Annotated, Any
 
 from msgspec import Meta, Struct
 
+from onpath.app.channel.plant_messages import PlantMessage
+
 SentCommand = Annotated[Mapping[str, Any], Meta(extra={"typescript": "Command"})]
 """A command that a button of the page sends."""
 
@@ -77,6 +79,7 @@ class StateMessage(Struct, frozen=True, kw_only=True, tag_field="is", tag="state
             need not be sent again.
         scene: how many times the page had asked for a picture of the robots when it asked for the
             present one; 0 without one.
+        plant: that stands in the place of the right robot; null: none.
     """
 
     language: str
@@ -109,3 +112,4 @@ class StateMessage(Struct, frozen=True, kw_only=True, tag_field="is", tag="state
     shared: str
     sent: list[str]
     scene: int = 0
+    plant: PlantMessage | None = None

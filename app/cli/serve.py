@@ -20,6 +20,7 @@ from onpath.app.cli.robot_options import NO_OPTIONS, FileOptions
 if TYPE_CHECKING:
     from onpath.app.classroom.classroom import Classroom
     from onpath.app.lab.shown_log import ShownLog
+    from onpath.app.plant.lab_plant import PlantChoice
     from onpath.models.paths.path_design import PathDesign
     from onpath.models.systems.robots import RobotEntry
 
@@ -87,6 +88,19 @@ class Serve:
     """A process whose simulation or network hangs for this time answers 503 at /health, and is
     started again after twice this time; time when it gets no processor does not count. 0 for
     never."""
+    plant: str | None = None
+    """Drive a plant elsewhere, which stands in the place of the robot on the right: the address of
+    this machine where its controller listens once it is started on the page, udp://HOST:PORT, see
+    app/plant/README.md. Not a safety function. One page drives, whose address is printed; all
+    others watch. With it, --law names the laws that can act on it: by default path_following."""
+    at_fault: Literal["zero", "hold", "damp"] = "zero"
+    """Torque of the plant after the end: none, the last one, or against the velocities."""
+    fastest: float = 100.0
+    """Largest rate of a joint of the plant, above which a measurement ends it, in rad/s, or m/s of
+    one that slides."""
+    open_to_others: bool = False
+    """Allow a --host or an address of --plant that other machines can reach: they may watch the
+    page, and whoever sends a measurement first is the plant."""
     log_level: Literal["debug", "info", "warning", "error"] = "info"
     """Lowest level of log messages."""
     file_options: FileOptions = NO_OPTIONS
@@ -129,7 +143,9 @@ class Serve:
         from onpath.app.storage.expiry import Retention
 
         entry = self.file_options.entry_of(self.robot)
-        law = self._law(entry)
+        laws, plant = self._laws(entry), None
+        if self.plant is not None:
+            plant = self._plant(self.plant, entry, laws)
         keys = given_keys()
         classrooms = open_classes(keys) if self.classroom else []
         try:
@@ -140,12 +156,14 @@ class Serve:
                 database_url(self.database),
                 open_browser=self.open and self.socket is None,
                 ready=partial(print_classes, classrooms, key_is_known=bool(keys)),
+                drives=_tell_driver,
                 options=ServerOptions(
                     robot=entry,
                     path=self._path(entry),
-                    law=law,
+                    law=laws[0] if laws else "",
                     settings=self._settings(entry),
                     log=self._logged(entry),
+                    plant=plant,
                     classrooms=classrooms,
                     most_clients=self.most_clients,
                     retention=Retention(self.keep_days, self.most_labs, self.keep_class_days),
@@ -162,8 +180,41 @@ class Serve:
             return 1
         return None
 
-    def _law(self, entry: RobotEntry) -> str:
-        """Add the user's own laws, and return the name of the first; "" if there are none.
+    def _plant(self, address: str, entry: RobotEntry, laws: tuple[str, ...]) -> PlantChoice:
+        """The plant that the lab is to drive.
+
+        Raises:
+            ValueError: its address is none, or other machines can reach it or the page and that is
+                not wanted; another option contradicts it; or its motors have no limits.
+        """
+        from onpath.app.cli.control import plant_address
+        from onpath.app.plant.lab_plant import PlantChoice
+        from onpath.app.viser_adapter.request_filter import is_loopback
+        from onpath.models.control.settable import specs, with_values
+
+        others = ("classroom", "lessons", "database", "origin", "trusted_proxy", "socket")
+        for name in others:
+            if getattr(self, name):
+                raise ValueError(f"--plant: not with --{name.replace('_', '-')}")
+        if not (is_loopback(self.host) or self.open_to_others):
+            raise ValueError(
+                f"--host {self.host}: other machines can reach it, and watch a plant:"
+                " use 127.0.0.1, or add --open-to-others"
+            )
+        given = {
+            name: v for name, v in self._settings(entry).items() if name in specs(entry.parameters)
+        }
+        if with_values(entry.parameters(), given).torque_limit == 0:
+            raise ValueError("a plant needs limits: --set torque_limit=... in N m")
+        return PlantChoice(
+            address=plant_address(address, open_to_others=self.open_to_others),
+            laws=laws or ("path_following",),
+            at_fault=self.at_fault,
+            fastest=self.fastest,
+        )
+
+    def _laws(self, entry: RobotEntry) -> tuple[str, ...]:
+        """Add the user's own laws, and return the names.
 
         Raises:
             ValueError: one of them has an error that a loop of this robot shows.
@@ -180,7 +231,7 @@ class Serve:
         parameters = entry.parameters()
         for name in names:
             kernel_of(entry.make(parameters), kind_of(name, parameters, circle(0.05)))
-        return names[0] if names else ""
+        return tuple(names)
 
     def _settings(self, entry: RobotEntry) -> dict[str, str]:
         """The settings of new labs.
@@ -232,6 +283,11 @@ class Serve:
         if remark := path_remark(curve):
             print(f"onpath: {remark}", file=sys.stderr)
         return from_curve(curve)
+
+
+def _tell_driver(address: str) -> None:
+    """Print the address of the page that drives a plant."""
+    print(f"drive:         {address}     on this machine; STOP is there, or Esc", flush=True)
 
 
 def _is_web_address(text: str) -> bool:

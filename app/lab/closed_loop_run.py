@@ -19,6 +19,7 @@ from onpath.models.closed_loop.loops import Loop
 from onpath.models.closed_loop.simulation import (
     MOST_STARTS,
     Push,
+    first_state,
     kind_of,
     paced,
     primed,
@@ -47,6 +48,23 @@ class Diverged:
     time: float
 
 
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class MeasuredRobot:
+    """What is known of a robot that is not simulated.
+
+    Attributes:
+        q, v: coordinates and velocities, shape (n,).
+        u: torques of its motors, shape (m,), [N m].
+        theta, theta_ref: of the closest point of the path, and of the reference point, [rad].
+    """
+
+    q: Array
+    v: Array
+    u: Array
+    theta: float
+    theta_ref: float
+
+
 class ClosedLoopRun:
     """State and inputs of one closed loop; only the simulation thread touches it.
 
@@ -55,6 +73,7 @@ class ClosedLoopRun:
         tell: is given what a user should know: why a law cannot be used with the robot and the
             inputs, so that the side gets a new lab's law; and once in a run, which motor gives more
             than the robot's file states.
+        measured: whether its robot is not simulated, but shown as `follow` tells.
 
     Attributes:
         side: name of the side.
@@ -75,9 +94,10 @@ class ClosedLoopRun:
         curve: Curve,
         start: Start = ON_PATH,
         tell: Callable[[ValueError | Message], None] = lambda _: None,
+        measured: bool = False,
     ) -> None:
         self._loop_cache, self.robot, self._made_with = loop_cache, robot, parameters
-        self._tell = tell
+        self._tell, self._measured = tell, measured
         self.side, self.law = side, law
         self.diverged: Diverged | None = None
         self._unfilled: Curve | None = None  # the path of a log row that its loop has to complete
@@ -97,6 +117,37 @@ class ClosedLoopRun:
         self.diverged = None
         self._beyond = False
         self._change(largest=self.distance)
+
+    def place(self, q: Array, v: Array, curve: Curve) -> None:
+        """Restart at coordinates and velocities, each shape (n,)."""
+        state = first_state(self.robot, self._layouts, curve, q, v)
+        self.slot = single(state, np.zeros(self._layouts.log.size), 0.0, 0.0)
+        self._fill_row(curve)
+        self._change(largest=self.distance)
+
+    def follow(self, now: MeasuredRobot, curve: Curve) -> None:
+        """Show what has been measured of a robot that is not simulated.
+
+        How it stands to the path, a tick of the loop tells; until there is one, it is as before.
+        """
+        robot, loop = self.robot, self.loop()
+        state = first_state(robot, self._layouts, curve, now.q, now.v)
+        fields, row = self._layouts.state.unpack(state), self.row.copy()
+        fields["u"][:], fields["theta"][:], fields["theta_ref"][:] = now.u, now.theta, now.theta_ref
+        if loop is not None and self._suits(curve):
+            _, rows = loop.run(state.copy(), self.settings, curve.table(), 1)
+            row = np.nan_to_num(rows[0], posinf=0.0, neginf=0.0)
+        shown, y = self.log.unpack(row), robot.endpoint(now.q)
+        for name in ("q", "v", "u", "theta", "theta_ref"):
+            shown[name][:] = fields[name]
+        shown["y"][:], shown["force"][:] = y, 0.0
+        distance = float(near_distance(robot.frame, curve, y[None], shown["theta"])[0])
+        self._change(state, row, distance, max(self.max_distance, distance))
+
+    @property
+    def moves(self) -> bool:
+        """Whether it is simulated, and has not stopped."""
+        return not self._measured and self.diverged is None
 
     def restore(self, drive: Drive, curve: Curve) -> None:
         """Restore the state and path of a checkpoint; the law stays the present one."""
@@ -228,7 +279,7 @@ class ClosedLoopRun:
 
     def input(self) -> Input:
         """Current input, for the history; the same object until more than `values` changes."""
-        frozen = self.diverged is not None
+        frozen = not self.moves
         if self._recorded is not self.settings or self._input.frozen != frozen:
             self._input = self._made_input(frozen).like(self._input)
             self.values = self.settings.take(self._input.varying).tobytes()

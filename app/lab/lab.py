@@ -22,6 +22,7 @@ from onpath.app.lab.breakdown import Breakdown
 from onpath.app.lab.identification.in_background import Identification
 from onpath.app.lab.lesson_run import LessonRun
 from onpath.app.lab.loops.loop_cache import LoopCache
+from onpath.app.lab.plant_state import PlantState
 from onpath.app.lab.script_player import ScriptPlayer
 from onpath.app.lab.setups.restore import restore
 from onpath.app.lab.setups.setup import Setup
@@ -67,6 +68,11 @@ class Command:
             ValueError: it is not possible now; the message tells the user why.
         """
         raise NotImplementedError
+
+    def suits(self, lab: Lab, plant: PlantState) -> bool:
+        """Whether it can be done while a robot of the lab is a plant elsewhere."""
+        del lab, plant
+        return False
 
     def parts(self, lab: Lab) -> Iterator[Command]:
         """The commands of which it consists; between two of them, other labs have their turn."""
@@ -115,6 +121,7 @@ class Lab:
         breakdown: what can be done when a robot has stopped.
         identification: of the controllers' model.
         watch: called in every frame, or None.
+        plant: that stands in the place of a robot, or None.
     """
 
     def __init__(
@@ -139,6 +146,7 @@ class Lab:
         self.breakdown = Breakdown()
         self.identification = Identification(loop_cache.at_once)
         self.watch: Callable[[Lab], None] | None = None
+        self.plant: PlantState | None = None
 
     @property
     def words(self) -> Words:
@@ -243,6 +251,8 @@ class Lab:
         """Why a user's command is refused now; None if it is not."""
         if self.frozen and not command.is_answer:
             return Message("class.frozen")
+        if self.plant is not None and not command.suits(self, self.plant):
+            return Message("plant.cannot")
         return self.locked if command.lets_time_run else None
 
     def _adopt_identified(self) -> None:

@@ -68,6 +68,7 @@ class Simulation:
         faults: sides whose robots have stopped and have not been reported yet.
         run_number: number of resets.
         across_since: time since which ξ has had its present unit, [s].
+        measured: the side whose robot is measured elsewhere, from the next run on; "": none.
     """
 
     def __init__(self, loop_cache: LoopCache, entry: RobotEntry = FIVE_BAR) -> None:
@@ -86,6 +87,7 @@ class Simulation:
         self.events = EventLog()
         self.faults: list[str] = []
         self.run_number = 0
+        self.measured = ""
         self._set_up(entry)
 
     # The robot
@@ -237,7 +239,7 @@ class Simulation:
             count = ticks if leg is None or leg.end is None else min(ticks, leg.end - now)
             for run in runs:
                 run.configure(parameters, curve, pushes[run.side], leg, now)
-            going = [run for run in runs if run.diverged is None]
+            going = [run for run in runs if run.moves]
             moving = [(run, loop) for run in going if (loop := run.loop()) is not None]
             if len(moving) < len(going):  # the path has just become another kind of curve
                 self._is_bent = True
@@ -255,7 +257,7 @@ class Simulation:
             begun = [run.slot for run in runs]
             yield part
             for i, run in enumerate(runs):
-                if run.diverged is not None:
+                if not run.moves:
                     begun[i] = run.slot  # it stands still
             self.history.append(self._recorder.record(part, runs, begun))
             for run, _ in moving:
@@ -347,6 +349,7 @@ class Simulation:
                 curve=curve,
                 start=start,
                 tell=self.law_changes.remarks.append,
+                measured=side == self.measured,
             )
             for side, law in laws.items()
         }

@@ -214,6 +214,11 @@ class Controller:
         return float(self._steps.fields["theta"][0]) if self._steps.started else np.nan
 
     @property
+    def theta_ref(self) -> float:
+        """Parameter of the reference point, of a law with a clock, [rad]."""
+        return float(self._steps.fields["theta_ref"][0]) if self._steps.started else np.nan
+
+    @property
     def draws(self) -> bool:
         """Whether the pen is down: not on a link between two strokes of a drawing."""
         curve = self.curve

@@ -12,6 +12,7 @@ import multiprocessing
 import os
 import signal
 import socket
+import threading
 import time
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
@@ -25,6 +26,7 @@ from onpath.app.common.end_signals import END_SIGNALS
 from onpath.app.notebook.controller import Controller, controller
 from onpath.app.plant.datagrams import LARGEST
 from onpath.app.plant.plant_link import SILENCE, PlantLink, PlantReport
+from onpath.models.errors import Message
 from onpath.models.paths.curves import Curve
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import RobotEntry
@@ -32,7 +34,8 @@ from onpath.models.systems.robots import RobotEntry
 ASKED = 1.0  # [s] without a request, after which the process that asks counts as lost
 LINGER = 10.0  # [s] for which a lost process's controller still answers
 START = "spawn"  # so that it shares nothing with the process that starts it
-PATIENCE = 60.0  # [s] for the controllers to be made, or for an answer
+PATIENCE = 60.0  # [s] for the controllers to be made
+ANSWERS = 5.0  # [s] for an answer
 GONE = "the controller's process has ended: the plant gets no torque"
 Address = tuple[str, int]
 
@@ -73,7 +76,7 @@ class ControllerPlan:
 
 
 class ControllerProcess:
-    """Starts a controller in a process of its own, and asks it. Not thread-safe.
+    """Starts a controller in a process of its own, and asks it: one question at a time.
 
     Args:
         plan: the controllers.
@@ -92,13 +95,14 @@ class ControllerProcess:
     def __init__(self, plan: ControllerPlan, address: Address) -> None:
         self.controllers = plan.made()
         self.robot = next(iter(self.controllers.values())).design.robot
+        self._lock = threading.Lock()
         context = multiprocessing.get_context(START)
         self._connection, theirs = context.Pipe()
         self._process = context.Process(target=serve, args=(theirs, plan, address))
         self._process.start()
         theirs.close()
         try:
-            self.address: Address = self._answered()
+            self.address: Address = self._answered(PATIENCE)
         except BaseException:
             self.close()
             raise
@@ -115,6 +119,10 @@ class ControllerProcess:
             OSError: the process has ended.
         """
         return self._ask("report")
+
+    def reason(self, report: PlantReport) -> Message | None:
+        """Why it has ended; None: it has not."""
+        return self.controllers[report.law].design.reason(report.code, np.array(report.q))
 
     def set(self, **settings: Any) -> PlantReport:
         """Change settings, as `Controller.set`."""
@@ -133,7 +141,7 @@ class ControllerProcess:
         return self._ask("use", law)
 
     def stop(self) -> PlantReport:
-        """End it: from now on the torque is the one that was chosen for a fault."""
+        """End it: from now on the torque is the one that was chosen for a fault. Thread-safe."""
         return self._ask("stop")
 
     def close(self) -> None:
@@ -147,15 +155,16 @@ class ControllerProcess:
         self._process.join()
 
     def _ask(self, what: str, *given: Any) -> PlantReport:
-        try:
-            self._connection.send((what, given))
-        except OSError:
-            raise OSError(GONE) from None
-        return self._answered()
+        with self._lock:
+            try:
+                self._connection.send((what, given))
+            except OSError:
+                raise OSError(GONE) from None
+            return self._answered(ANSWERS)
 
-    def _answered(self) -> Any:
+    def _answered(self, patience: float) -> Any:
         try:
-            answer = self._connection.recv() if self._connection.poll(PATIENCE) else OSError(GONE)
+            answer = self._connection.recv() if self._connection.poll(patience) else OSError(GONE)
         except (EOFError, OSError):
             raise OSError(GONE) from None
         if isinstance(answer, Exception):

@@ -25,7 +25,7 @@ class PlantReport:
         code: 0, or why it has ended.
         reason: the same in a sentence, or "".
         q: as measured last, n numbers.
-        theta: of the closest point of the path, [rad].
+        theta, theta_ref: of the closest point of the path, and of the reference point, [rad].
         answered: measurements that got a torque.
         repeated: measurements that came twice or after a later one.
         foreign: datagrams from another sender than the first.
@@ -42,6 +42,7 @@ class PlantReport:
     reason: str = ""
     q: tuple[float, ...] = ()
     theta: float = np.nan
+    theta_ref: float = np.nan
     answered: int = 0
     repeated: int = 0
     foreign: int = 0
@@ -166,6 +167,7 @@ class PlantLink:
             reason=acting.reason,
             q=() if last is None else tuple(last.q),
             theta=acting.theta,
+            theta_ref=acting.theta_ref,
             rows=tuple(self._rows),
         )
         self._rows = []

@@ -202,7 +202,8 @@ class ClientScene:
         self._is_placed = False
         self.client.gui.configure_theme(dark_mode=look.dark)
         stage = stage_of(robot, DARK if look.dark else LIGHT, look.plain)
-        callbacks = SceneCallbacks() if first.key.student else self._callbacks(robot)
+        is_shown = bool(first.key.student) or first.plant is not None
+        callbacks = SceneCallbacks() if is_shown else self._callbacks(robot)
         self._scene = Scene(self.client, stage, callbacks, titled=False)
         self._scene.build(first)
         one_at_a_time.rest()

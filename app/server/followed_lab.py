@@ -4,11 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Protocol
 
 from onpath.app.classroom.classroom import Classroom
 from onpath.app.classroom.teaching.teacher_context import TeacherChoices
 from onpath.app.simulation.scheduled_lab import ScheduledLab
 from onpath.lessons.words import Words
+
+
+class Followed(Protocol):
+    """Another lab than its own that a page shows."""
+
+    def find(self) -> tuple[ScheduledLab, int] | None:
+        """The lab, and the number of its student, see `PageKey`; None: the page shows its own."""
+        ...
 
 
 @dataclass(frozen=True, slots=True)

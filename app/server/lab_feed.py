@@ -16,7 +16,7 @@ from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.snapshot import Motion
 from onpath.app.lab.snapshots.take_snapshot import take_motion, take_page_snapshot
 from onpath.app.scene.client_scene import ClientScene
-from onpath.app.server.followed_lab import FollowedLab
+from onpath.app.server.followed_lab import Followed
 from onpath.app.server.page_data import EVERY, PageData
 from onpath.app.simulation.display_rate import AT_EASE, is_turn
 from onpath.app.simulation.scheduled_lab import LabDisplay
@@ -31,7 +31,7 @@ class LabFeed(LabDisplay):
         send: sends what has been handed over for all pages.
         offset: spreads the pages over the frames.
         nickname: returns the student's nickname in the class; empty if there is none.
-        followed: the student's lab that a teacher's page shows instead, or None.
+        followed: the lab that is shown instead, such as a student's on a teacher's page, or None.
 
     Attributes:
         scene: the robots' picture, as long as it is there.
@@ -45,7 +45,7 @@ class LabFeed(LabDisplay):
         send: Callable[[], None],
         offset: int,
         nickname: Callable[[], str] = str,
-        followed: FollowedLab | None = None,
+        followed: Followed | None = None,
     ) -> None:
         self.scene: ClientScene | None = None
         self._data, self.make, self._send = data, make, send

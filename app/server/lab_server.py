@@ -21,6 +21,7 @@ from onpath.app.common.error_log import log_error
 from onpath.app.common.periodic import Periodic
 from onpath.app.exports import exporter as exports
 from onpath.app.exports import upload_reader
+from onpath.app.lab.lab import Lab
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.scene.build_queue import BuildQueue, one_at_a_time
 from onpath.app.scene.client_scene import ClientScene
@@ -30,6 +31,7 @@ from onpath.app.server.admission_queue import AdmissionQueue
 from onpath.app.server.built_in_course import built_in_course
 from onpath.app.server.class_directory import ClassDirectory
 from onpath.app.server.class_service import ClassService
+from onpath.app.server.followed_lab import Followed
 from onpath.app.server.heap import limit_heap
 from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_registry import LabRegistry, RegisteredLab
@@ -38,6 +40,7 @@ from onpath.app.server.own_part import own_part, screen_page
 from onpath.app.server.page_context import PageContext
 from onpath.app.server.page_data import PageData
 from onpath.app.server.page_text import PageText
+from onpath.app.server.plant_desk import PlantDesk
 from onpath.app.server.robot_shapes import prepare_shapes
 from onpath.app.server.robot_tips import Remark, RobotTips, TipPressed
 from onpath.app.server.server_options import USUAL, ServerOptions
@@ -56,7 +59,7 @@ from onpath.app.viser_adapter.addresses import WALL, class_address
 from onpath.app.viser_adapter.connections import turn_away
 from onpath.app.viser_adapter.scene_release import clear_scene
 from onpath.app.viser_adapter.secure_server import make_server
-from onpath.lessons.course import read_course
+from onpath.lessons.course import NO_LESSONS, read_course
 from onpath.lessons.problems import LessonError
 
 log = logging.getLogger(__name__)
@@ -115,18 +118,11 @@ class LabServer:
         """Make everything that the first page needs."""
         self.server, options = server, self._options
         robot, records = options.robot, options.records
-        self.registry = LabRegistry(
-            self.thread,
-            lambda: new_lab(
-                self._loop_cache,
-                self._course,
-                robot,
-                path=options.path,
-                law=options.law,
-                settings=options.settings,
-                log=options.log,
-            ),
-        )
+        self.registry = LabRegistry(self.thread, self._page_lab)
+        self.desk = None
+        if options.plant is not None:
+            self.desk = PlantDesk(self._new_lab(), options.plant)
+            self.thread.add(self.desk.scheduled)
         self._memory = Periodic("memory", FREEING, self.registry.free_memory)
         self._keeper = self._expiry = None
         if records is not None:
@@ -137,6 +133,24 @@ class LabServer:
         set_initial_camera(server, stage_of(robot.make(robot.parameters())))
         self.visits.attend(server)
         self._start()
+
+    def _new_lab(self) -> Lab:
+        options = self._options
+        return new_lab(
+            self._loop_cache,
+            self._course,
+            options.robot,
+            path=options.path,
+            law=options.law,
+            settings=options.settings,
+            log=options.log,
+        )
+
+    def _page_lab(self) -> Lab:
+        """The lab of a page; it rests if all pages show that of a plant."""
+        lab = self._new_lab()
+        lab.frozen = self._options.plant is not None
+        return lab
 
     def _store_labs(self, records: Records) -> None:
         self._keeper = WriteBehind(records, lost=self._lost)
@@ -178,10 +192,14 @@ class LabServer:
 
     def stop(self) -> None:
         """Stop the server and all its threads."""
+        if self.desk is not None:
+            self.desk.plant.stop()
         self._watchdog.stop()
         self._memory.stop()
         self._newcomers.stop()
         self.thread.stop()
+        if self.desk is not None:
+            self.desk.plant.close()
         self.registry.check()
         self._loop_cache.close()
         for visit in self.visits:
@@ -284,6 +302,10 @@ class LabServer:
     def _feed(self, visit: Visit, entry: RegisteredLab) -> LabFeed:
         """What shows a lab to a visit."""
         code, lab = entry.code, entry.scheduled.lab
+        desk = self.desk
+        drives = desk is not None and desk.sit(visit)
+        if desk is not None:
+            code, lab = "", desk.scheduled.lab if drives else lab
         service, teacher = self._classes.at(visit.prefix), visit.teacher
         reopen = partial(self._reopen, visit, entry)
         seat = (
@@ -292,7 +314,8 @@ class LabServer:
             else self._classes.seat_elsewhere(visit.prefix, code)
         )
         site = site_for_students(visit.hello.site, self.site)
-        teaching = followed = None
+        teaching = None
+        followed: Followed | None = None if desk is None else desk.shown(drives)
         if service is not None and teacher is not None:
             teaching = service.teaching(visit, teacher, lab, reopen, site)
             followed = service.followed(teacher[1])
@@ -318,6 +341,7 @@ class LabServer:
             privacy_url=self._options.privacy_url,
             presses=visit.presses,
             teaching=teaching,
+            drive=desk.hear if desk is not None and drives else None,
         )
         return LabFeed(
             PageData(visit.stream, lab, context, visit.sight),
@@ -385,6 +409,7 @@ def serve(
     database: str | None = None,
     open_browser: bool = False,
     ready: Callable[[str], None] = lambda _: None,
+    drives: Callable[[str], None] = lambda _: None,
     options: ServerOptions = USUAL,
 ) -> None:
     """Serve the lab until one of `END_SIGNALS`, such as Ctrl-C.
@@ -394,6 +419,7 @@ def serve(
         database: URL of the database of labs; defaults to a file of the user's. If it is given, or
             if the server is behind a proxy, it must be usable; otherwise memory may replace it.
         ready: called when browsers may come, with the address at which other devices open the lab.
+        drives: called then with the address of the page that drives a plant, if there is one.
         options: all others; `course` and `records` follow from the arguments above. Loops of a
             robot from a file are compiled first.
 
@@ -405,10 +431,14 @@ def serve(
     course, problems = read_course([lessons] if lessons else [], built_in_course())
     if problems:
         raise LessonError(problems)
-    in_public = options.allowed_origins or options.trusted_proxies
-    records = Records(database, needed=bool(database or in_public))
-    if records.warning:
-        log.warning("%s", records.warning)
+    records = None
+    if options.plant is not None:
+        course = NO_LESSONS
+    else:
+        in_public = options.allowed_origins or options.trusted_proxies
+        records = Records(database, needed=bool(database or in_public))
+        if records.warning:
+            log.warning("%s", records.warning)
     loop_cache = LoopCache()
     if options.robot.source is not None:
         compile_loops(loop_cache, options.robot)
@@ -420,8 +450,11 @@ def serve(
         warm_up(loop_cache, course)
         log.info("OnPath is ready at %s  (Ctrl-C stops it)", lab.address)
         ready(lab.site)
+        first = class_address(options.classrooms[0].code) if options.classrooms else ""
+        if lab.desk is not None:
+            first = f"/#drive={lab.desk.key}"
+            drives(f"{lab.address}{first}")
         if open_browser:
-            first = class_address(options.classrooms[0].code) if options.classrooms else ""
             webbrowser.open(f"{lab.address}{first}")
         while True:  # a signal may go to another thread and then does not wake this one
             time.sleep(CHECK)

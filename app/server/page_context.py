@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+from onpath.app.channel.plant_messages import DrivePlant
 from onpath.app.classroom.teaching.teacher_context import TeacherContext
 from onpath.app.common.presses import Presses
 from onpath.app.scene.client_scene import Look
@@ -52,7 +53,7 @@ class PageContext:
     """The context of one client's page.
 
     Attributes:
-        code: code of its lab.
+        code: code of its lab; empty if nobody is to come back to it.
         course: all lessons.
         keep_days: number of days without use after which the lab is deleted; 0 if it lasts only
             as long as the server.
@@ -66,6 +67,7 @@ class PageContext:
         teaching: of a teacher's page.
         text: what the page says.
         switches: names of what is drawn besides the robots; see `Overlays`.
+        drive: of the page that drives a plant, or None.
     """
 
     code: str
@@ -81,3 +83,4 @@ class PageContext:
     presses: Presses = field(default_factory=Presses)
     teaching: TeacherContext | None = None
     switches: set[str] = field(default_factory=set)
+    drive: Callable[[DrivePlant], None] | None = None

@@ -32,6 +32,7 @@ from onpath.app.channel.messages import (
     encoded_changes,
 )
 from onpath.app.channel.motion_messages import Plot
+from onpath.app.channel.plant_messages import DrivePlant
 from onpath.app.channel.reading import NoPageMessage, read_message
 from onpath.app.channel.sheet_messages import ClassMessage, Request
 from onpath.app.channel.state_messages import StateMessage
@@ -197,7 +198,7 @@ class PageData:
             return
         messages = list[Message]()
         if text.words.language != self._language:
-            if not self._language:
+            if not self._language and self._context.code:
                 messages.append(_text_of(LabCode, self._context.code))
             self._language = text.words.language
             messages.append(partial(words_message, self._language))
@@ -297,6 +298,8 @@ class PageData:
                 return encoded(Refused("this lab is only shown"))
             case SendFile() | SendPart() | DropFile() | MakeFile():
                 return self._hear_file(message)
+            case DrivePlant():
+                return self._hear_driver(message)
             case Lead():
                 return self._hear_teacher(message)
             case SetField() if is_of_class(message):
@@ -334,8 +337,17 @@ class PageData:
             return encoded(Refused("only a teacher of the class may do this"))
         return b""
 
+    def _hear_driver(self, message: DrivePlant) -> bytes:
+        """Take an order to a plant; returns why not, if the page may give none."""
+        if self._context.drive is None:
+            return encoded(Refused("this page does not drive a plant"))
+        self._context.drive(message)
+        return b""
+
     def _hear_file(self, message: SendFile | SendPart | DropFile | MakeFile) -> bytes:
         """Take a message about a file; returns the answer, if there is one. On the event loop."""
+        if isinstance(message, MakeFile) and self.own.plant is not None:
+            return encoded(Refused("what a plant does cannot be simulated again"))
         if isinstance(message, SendFile) and not self._is_own:
             return encoded(Refused("this lab is only shown"))
         answer = self._files.hear(message)

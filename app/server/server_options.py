@@ -8,6 +8,7 @@ from pathlib import Path
 
 from onpath.app.classroom.classroom import Classroom
 from onpath.app.lab.shown_log import ShownLog
+from onpath.app.plant.lab_plant import PlantChoice
 from onpath.app.storage.expiry import Retention
 from onpath.app.storage.records import Records
 from onpath.app.viser_adapter.limits import Limits
@@ -33,6 +34,7 @@ class ServerOptions:
         privacy_url: the address of the site's privacy notice, if it has one.
         robot: with which a new lab begins.
         path, law, settings, log: those of new labs; see `new_lab`.
+        plant: a plant elsewhere in the lab that all pages show; None: each page has its own lab.
         limits, allowed_origins, trusted_proxies, unix_socket, course_url: see `make_server`.
     """
 
@@ -48,6 +50,7 @@ class ServerOptions:
     law: str = ""
     settings: Mapping[str, str] = field(default_factory=dict[str, str])
     log: ShownLog | None = None
+    plant: PlantChoice | None = None
     limits: Limits = Limits()
     allowed_origins: tuple[str, ...] = ()
     trusted_proxies: tuple[str, ...] = ()

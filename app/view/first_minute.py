@@ -78,7 +78,7 @@ class FirstMinute:
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the next invitation, or remove the one that has been followed."""
-        if self.is_over:
+        if self.is_over or snapshot.plant is not None:
             return
         if snapshot.key.in_lesson and INVITATIONS[self._next].name != LAST:
             self.shown = None  # a lesson says itself what to do

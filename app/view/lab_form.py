@@ -32,6 +32,7 @@ from onpath.app.lab.commands import (
 )
 from onpath.app.lab.commands.command_codec import message_of
 from onpath.app.lab.lab import Command
+from onpath.app.lab.plant_state import SIDE, settable
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of
 from onpath.app.view.forms import (
     ELSEWHERE,
@@ -53,7 +54,7 @@ from onpath.lessons.words import Words
 from onpath.models.closed_loop.lab_settings import SETTINGS, LabSettings
 from onpath.models.control.laws.own import OWN, PATH_FOLLOWING, is_text
 from onpath.models.control.settable import specs, values_of
-from onpath.models.control.sides import DEFAULT_LAWS, SIDES
+from onpath.models.control.sides import DEFAULT_LAWS, LEFT, SIDES
 from onpath.models.paths.path_design import REACH, presets
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.robots import Robot
@@ -113,6 +114,12 @@ STATES = {
     "gains": ("K1", "K2", "K5"),
 }
 """Fields whose values a closed group shows."""
+BESIDE_PLANT = (
+    *("path", "draw", "file", "undo", "redo", "pace"),
+    *(f"{part}{side}" for side in SIDES for part in ("", "typed_", "about_")),
+    *("poles", "pole_plane", "tube_sizes", "rank_scale", "view"),
+)
+"""Fields that stay beside the settings when a robot is a plant elsewhere."""
 CONTROLS = {
     "path": ("path", "rise"),
     "laws": tuple(name for side in SIDES for name in (side, f"typed_{side}")),
@@ -149,8 +156,14 @@ def form_of(snapshot: PageSnapshot, setup: StepSetup | None, words: Words) -> Fo
     """
     edit = snapshot.edit
     own = "" if edit.name in presets() else edit.name
-    laws = tuple(snapshot.run.laws.items())
-    lab = _Lab(robot=snapshot.key.robot, laws=laws, path=own, points=len(edit.points))
+    laws, plant = tuple(snapshot.run.laws.items()), snapshot.plant
+    lab = _Lab(
+        robot=snapshot.key.robot,
+        laws=laws,
+        path=own,
+        points=len(edit.points),
+        plant=() if plant is None else plant.laws,
+    )
     if setup is None:
         return _lab_form(lab, words)
     return _step_form(lab, setup.controls, tuple(setup.set.items()), words)
@@ -168,12 +181,14 @@ class _Lab:
     Attributes:
         path: the name of a path of one's own; empty if it is a preset.
         points: number of its control points.
+        plant: laws of a plant elsewhere in the place of a robot; (): there is none.
     """
 
     robot: str
     laws: tuple[tuple[str, str], ...]
     path: str
     points: int
+    plant: tuple[str, ...] = ()
 
 
 def values_in(
@@ -206,7 +221,7 @@ def values_in(
         values["point"] = selected + 1
         values["point_z1"], values["point_z2"] = map(float, points[selected])
     for side, law in laws.items():
-        typed = is_text(law)
+        typed = is_text(law) and (snapshot.plant is None or side != SIDE)
         values[side] = OWN if typed or side in typing else law
         values[f"typed_{side}"] = (law if typed else PATH_FOLLOWING).replace("; ", "\n")
         values[f"about_{side}"] = "" if values[side] == OWN else law_text(law, words)
@@ -240,6 +255,8 @@ def switch_name(drawing: str) -> str:
 @lru_cache(maxsize=64)
 def _lab_form(lab: _Lab, words: Words) -> FormMessage:
     fields = _fields(lab, {}, words)
+    if lab.plant:
+        fields = _beside_plant(fields, lab, words)
     groups: dict[str, list[FormField]] = {name: [] for name in GROUPS}
     groups["setup"] = [fields[name] for name in FIRST if name in fields]
     for name, field in fields.items():
@@ -264,6 +281,21 @@ def _lab_form(lab: _Lab, words: Words) -> FormMessage:
             if groups[name]
         ),
     )
+
+
+def _beside_plant(fields: Mapping[str, FormField], lab: _Lab, words: Words) -> dict[str, FormField]:
+    """The fields of what can be done with a plant in the place of a robot."""
+    drawn = {switch_name(name) for name in SWITCHES if name not in ("start", "tips")}
+    kept = {*BESIDE_PLANT, *drawn} - {f"typed_{SIDE}"}
+    parameters = ROBOTS[lab.robot].parameters
+    found = {
+        name: field for name, field in fields.items() if name in kept or settable(name, parameters)
+    }
+    options = tuple(FormOption(value=law, label=law_label(law, words)) for law in lab.plant)
+    law = structs.replace(found[SIDE], label=words("plant.law"), options=options, default=None)
+    simulated = structs.replace(found[LEFT], label=words("plant.law_simulated"))
+    found |= {SIDE: law, LEFT: simulated}
+    return found
 
 
 @lru_cache(maxsize=64)

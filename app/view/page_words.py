@@ -37,6 +37,9 @@ _PLAIN = (
         "invite.lesson_button",
     ),
     *("remote.title", "remote.plain"),
+    *("plant.name", "plant.start", "plant.start_hint", "plant.stop", "plant.stop_hint"),
+    *("plant.at_fault", "plant.zero", "plant.hold", "plant.damp", "plant.safety"),
+    "plant.watching",
     *SHELL,
 )
 _FILLED = {

@@ -19,10 +19,19 @@ from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.robots import Robot
 
+BESIDE_PLANT = ("undo", "redo", "summary", "view")
+"""Keys of a lab of which one robot is a plant elsewhere."""
 
-def index(robot: Robot, course: Course, words: Words) -> Index:
-    """The index of a lab with a robot."""
+
+def index(robot: Robot, course: Course, words: Words, plant: bool = False) -> Index:
+    """The index of a lab with a robot.
+
+    Args:
+        plant: whether a robot is a plant elsewhere.
+    """
     keys = shown_keys(words, next(iter(course.lessons), ""))
+    if plant:
+        return Index(found=[*_paths(words)], keys=[key for key in keys if key.name in BESIDE_PLANT])
     found = [*_robots(words), *_laws(robot, words), *_paths(words), *_lessons(course, words)]
     found += [Found(kind="key", label=key.does, text=key.shown, send=[key.send]) for key in keys]
     return Index(found=found, keys=keys)

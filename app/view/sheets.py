@@ -58,7 +58,7 @@ def sheet_of(
         "lessons": lambda: lesson_sheet(LessonState(course, snapshot.lesson.progress, words)),
         "help": lambda: help_sheet(words),
         "display": lambda: display_sheet(context.preferences),
-        "index": lambda: index(robot, course, words),
+        "index": lambda: index(robot, course, words, snapshot.plant is not None),
     }
     return make[what]()
 

@@ -6,10 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from msgspec import structs
 
 from onpath.app.channel.state_messages import Said, StateMessage
 from onpath.app.lab.plot_rows import row_data
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
+from onpath.app.view.plant import plant_message
 from onpath.lessons.labels import robot_label
 from onpath.lessons.sides import displayed_names, law_text, side_titles
 from onpath.lessons.words import Words
@@ -54,6 +56,7 @@ def state_message(
         seen: how the picture shows the robots, or will.
     """
     laws, run, rate = snapshot.laws, snapshot.run, snapshot.settings.rate
+    plant = snapshot.plant
     titles = side_titles(laws, words)
     is_level_set = snapshot.parameters["across"] == LEVEL_SET
     names, guesses = displayed_names(laws, words), ROBOTS[snapshot.key.robot].guesses
@@ -61,7 +64,7 @@ def state_message(
         language=words.language,
         robot=snapshot.key.robot,
         titles=[titles[side] for side in laws],
-        names=[names[side] for side in laws],
+        names=[names[side] for side in laws] if plant is None else _beside_plant(words),
         texts=[law_text(law, words) for law in laws.values()],
         captions=[captions.get(side, "") for side in laws],
         clocks=[law_named(law).by_clock for law in laws.values()],
@@ -72,7 +75,7 @@ def state_message(
         message=snapshot.message,
         level=snapshot.message_level if snapshot.message else "",
         messages=snapshot.messages,
-        said=said,
+        said=said if plant is None else structs.replace(said, replays=False, earlier=""),
         presenting=snapshot.key.presenting,
         height=round(seen.height, 3),
         cameras=np.round(seen.cameras, 5).tolist(),
@@ -87,4 +90,10 @@ def state_message(
         laws=list(run.laws.values()),
         shared=snapshot.shared,
         sent=list(snapshot.sent),
+        plant=None if plant is None else plant_message(plant, words),
     )
+
+
+def _beside_plant(words: Words) -> list[str]:
+    """What a simulated robot and a plant are called."""
+    return [words("plant.simulated"), words("plant.name")]

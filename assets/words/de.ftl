@@ -2244,3 +2244,32 @@ robots-reading = { $file } wird mit dem Endpunkt { $tip } gelesen …
 robots-shapes = Die Netze für den Endpunkt { $tip } werden gelesen …
 robots-not_built = { $file } mit dem Endpunkt { $tip }: { $reason }. Der Roboter bleibt, wie er war
 robots-not_read = sie konnte nicht gelesen werden ({ $reason })
+
+## Eine Anlage anderswo, an der Stelle eines Roboters
+
+plant-name = Anlage
+plant-simulated = Simuliert
+plant-law = Gesetz der Anlage
+plant-law_simulated = Gesetz, simuliert
+plant-start = START
+plant-stop = STOPP
+plant-stop_hint = Beendet es sofort. Taste: Esc
+plant-start_hint = Startet den Regler. Der Arm bewegt sich, sobald sein Programm misst.
+plant-at_fault = Drehmoment nach dem Ende
+plant-zero = keines
+plant-hold = das letzte
+plant-damp = gegen die Bewegung
+plant-off = Es ist nichts gestartet.
+plant-starting = Der Regler wird erzeugt …
+plant-waiting = Er wartet auf die Anlage an { $address }. Der Arm bewegt sich, sobald sein Programm misst.
+plant-running = Es läuft.
+plant-ended = Es ist beendet: { $cause }.
+plant-sends = Die Anlage sendet noch; ihr Drehmoment jetzt: { $torque }. START geht wieder, wenn ihr Programm beendet ist.
+plant-late = höchstens { $late } ms verspätet in der letzten Sekunde, { $latest } ms seit dem Start
+plant-safety = Keine Sicherheitsfunktion. Um einen echten Arm gehören ein Not-Halt, der den Strom abschaltet, und die Grenzen des Herstellers; bleiben Sie außerhalb seiner Reichweite.
+plant-watching = Diese Seite sieht zu; eine andere steuert.
+plant-stopped = jemand hat STOPP gedrückt
+plant-page_lost = die steuernde Seite ist weg oder im Hintergrund
+plant-stood_still = das Lab stand eine Sekunde lang still
+plant-failed = { $reason }
+plant-cannot = Mit einem echten Arm geht das nicht.

@@ -1827,3 +1827,32 @@ robots-reading = Reading { $file } with the end-point { $tip } …
 robots-shapes = Reading the meshes for the end-point { $tip } …
 robots-not_built = { $file } with the end-point { $tip }: { $reason }. The robot stays as it was
 robots-not_read = it could not be read ({ $reason })
+
+## A plant elsewhere, in the place of a robot
+
+plant-name = Plant
+plant-simulated = Simulated
+plant-law = Law, plant
+plant-law_simulated = Law, simulated
+plant-start = START
+plant-stop = STOP
+plant-stop_hint = Ends it now. Key: Esc
+plant-start_hint = Starts the controller. The arm moves as soon as its program measures.
+plant-at_fault = Torque after the end
+plant-zero = none
+plant-hold = the last one
+plant-damp = against the motion
+plant-off = Nothing has been started.
+plant-starting = The controller is being made …
+plant-waiting = It waits for the plant at { $address }. The arm moves as soon as its program measures.
+plant-running = It runs.
+plant-ended = It has ended: { $cause }.
+plant-sends = The plant still sends; its torque now: { $torque }. START is possible when its program has ended.
+plant-late = at most { $late } ms late in the last second, { $latest } ms since the start
+plant-safety = No safety function. Around a real arm there must be a stop that cuts the power, and its maker's limits; keep out of its reach.
+plant-watching = This page watches; another one drives.
+plant-stopped = somebody has pressed STOP
+plant-page_lost = the page that drives it is lost, or in the background
+plant-stood_still = the lab has stood still for a second
+plant-failed = { $reason }
+plant-cannot = With a real arm this cannot be done.

@@ -136,6 +136,7 @@ ASKED: dict[str, dict[str, Any]] = {
     "link": {"word": "green cactus"},
     "teach": {"key": "k7mf2xqa9tzr"},
     "lead": {"do": "freeze", "member": 1},
+    "drive": {"what": "beat"},
 }
 """A message of each kind that a page sends besides commands."""
 NUMBERS = [-1e9, -1.0, -1e-9, 0.0, 1e-300, 0.05, 0.3, 1.0, 1e9]

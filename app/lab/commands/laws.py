@@ -8,6 +8,7 @@ from typing_extensions import override
 
 from onpath.app.lab.commands import checks
 from onpath.app.lab.lab import Command, Lab
+from onpath.app.lab.plant_state import SIDE, PlantState
 from onpath.models.control.laws.own import own_law
 from onpath.models.control.laws.registry import law_named
 from onpath.models.control.sides import checked_laws
@@ -25,6 +26,10 @@ class ChooseLaw(Command):
 
     side: str
     law: str
+
+    @override
+    def suits(self, lab: Lab, plant: PlantState) -> bool:
+        return self.side != SIDE or self.law in plant.laws
 
     @override
     def apply(self, lab: Lab) -> None:
@@ -48,6 +53,10 @@ class TypeLaw(Command):
 
     side: str
     text: str
+
+    @override
+    def suits(self, lab: Lab, plant: PlantState) -> bool:
+        return self.side != SIDE
 
     @override
     def apply(self, lab: Lab) -> None:

@@ -11,6 +11,7 @@ from typing_extensions import override
 from onpath.app.lab.commands.scripts import commands_of, player_of
 from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.lesson_state import Sent
+from onpath.app.lab.plant_state import PlantState
 from onpath.assets.messages import languages
 from onpath.lessons.action_schema import Action
 from onpath.lessons.given import Answer, Sure
@@ -222,6 +223,10 @@ class SetLanguage(Command):
     """Set the language of texts and interface."""
 
     language: str
+
+    @override
+    def suits(self, lab: Lab, plant: PlantState) -> bool:
+        return True
 
     @override
     def apply(self, lab: Lab) -> None:

@@ -12,6 +12,7 @@ from typing_extensions import override
 from onpath.app.lab.commands.checks import finite, point
 from onpath.app.lab.commands.time import StepOnce
 from onpath.app.lab.lab import Await, Command, Lab
+from onpath.app.lab.plant_state import PlantState
 from onpath.lessons.words import Words
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
@@ -32,6 +33,10 @@ class ChoosePath(Command):
     """Follow a preset path."""
 
     name: str
+
+    @override
+    def suits(self, lab: Lab, plant: PlantState) -> bool:
+        return True
 
     @override
     def apply(self, lab: Lab) -> None:
@@ -168,6 +173,10 @@ class DrawPath(Command):
     stroke: Array
 
     @override
+    def suits(self, lab: Lab, plant: PlantState) -> bool:
+        return True
+
+    @override
     def parts(self, lab: Lab) -> Iterator[Command]:
         stroke = np.asarray(self.stroke, dtype=float)
         if stroke.ndim != 2 or stroke.shape[1] != 2 or len(stroke) > MOST_STROKE_POINTS:
@@ -203,6 +212,10 @@ class FollowCurve(Command):
     remarks: str = ""
 
     @override
+    def suits(self, lab: Lab, plant: PlantState) -> bool:
+        return True
+
+    @override
     def apply(self, lab: Lab) -> None:
         _draw(lab, from_curve(self.curve), self.remarks)
 
@@ -210,6 +223,10 @@ class FollowCurve(Command):
 @dataclass(frozen=True, slots=True)
 class Undo(Command):
     """Undo the last edit of the path."""
+
+    @override
+    def suits(self, lab: Lab, plant: PlantState) -> bool:
+        return True
 
     @override
     def apply(self, lab: Lab) -> None:
@@ -220,6 +237,10 @@ class Undo(Command):
 @dataclass(frozen=True, slots=True)
 class Redo(Command):
     """Redo the last undone edit of the path."""
+
+    @override
+    def suits(self, lab: Lab, plant: PlantState) -> bool:
+        return True
 
     @override
     def apply(self, lab: Lab) -> None:
@@ -241,8 +262,9 @@ def _draw(lab: Lab, design: PathDesign, remark: str) -> None:
     if simulation.editor.design is not design:
         return
     told, level = " ".join(filter(None, [remark, lab.message])), lab.message_level
-    simulation.editor.settle()
-    simulation.restart()
+    if lab.plant is None:
+        simulation.editor.settle()
+        simulation.restart()
     lab.show_message(told, level)
 
 

@@ -9,6 +9,7 @@ from typing_extensions import override
 
 from onpath.app.lab.commands.wall import first_wall
 from onpath.app.lab.lab import Command, Lab
+from onpath.app.lab.plant_state import PlantState, settable
 from onpath.app.lab.simulation import Simulation
 from onpath.models.closed_loop.lab_settings import (
     SETTINGS,
@@ -45,6 +46,10 @@ class Set(Command):
     role: ClassVar[Role] = "lab"
     name: str
     value: Any = None
+
+    @override
+    def suits(self, lab: Lab, plant: PlantState) -> bool:
+        return settable(self.name, lab.simulation.parameters)
 
     @override
     def apply(self, lab: Lab) -> None:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from onpath.app.lab.plant_state import PlantState
 from onpath.app.lab.shown_log import ShownLog
 from onpath.app.lab.snapshots.snapshot import Snapshot
 from onpath.lessons.checks import Verdict
@@ -144,6 +145,7 @@ class PageSnapshot(Snapshot):
         sent: keys of answers that are stored; see `LessonState.sent`.
         nickname: the student's nickname in the class, or empty.
         log: of a real arm, or None.
+        plant: see `Lab.plant`.
     """
 
     parameters: ParameterValues
@@ -159,6 +161,7 @@ class PageSnapshot(Snapshot):
     wall_forces: dict[str, float]
     places: LawPlaces
     log: LogSnapshot | None
+    plant: PlantState | None = None
 
     @property
     def values(self) -> dict[str, Any]:

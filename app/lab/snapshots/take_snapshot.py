@@ -113,6 +113,7 @@ def take_page_snapshot(
         refused=dict(lab.refused),
         places=law_places(simulation, scene["time"], before),
         log=_log(lab, before),
+        plant=lab.plant,
     )
 
 
@@ -242,7 +243,9 @@ def _path_snapshot(
         return robot.position(robot.frame.lift(z))
 
     refused = [fault.points for fault in editor.faults] if is_present else []
-    points = editor.points() if is_present else np.zeros((0, 2))
+    points = np.zeros((0, 2))
+    if is_present and not simulation.measured:
+        points = editor.points()
     if len(points) and editor.rise:
         theta, _ = editor.blend.target.plan.nearest(points)
         points = np.column_stack([points, editor.blend.target.at(theta)[:, 2]])

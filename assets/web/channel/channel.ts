@@ -5,7 +5,7 @@ import { keepDraftsOf } from "../core/drafts"
 import { logCurves, sampleAt, type Act, type Change, type Engine, type LogCurves, type PathShape, type RowData, type Sample, type SideSample, type SideText, type State, type Vector } from "../core/engine"
 import { AT_JOINTS } from "../core/symbols"
 import { Files } from "./files"
-import { keep, keepLab, kept, siteOf } from "./kept"
+import { driversKey, keep, keepLab, kept, siteOf } from "./kept"
 import { Outbox } from "./outbox"
 import { RemoteSettings } from "./settings"
 import {
@@ -156,6 +156,7 @@ export class ServerEngine implements Engine {
     /** The forms of the lab and of an open step; the lab tells them if it is asked. */
     readonly forms = new Map<FormMessage["place"], FormMessage>()
     private asksForm = false
+    private readonly drives: string // key of the page that drives a plant
     /** The open step of a lesson, and what is measured in it; null until they are known. */
     lesson: LessonMessage | null = null
     measured: MeasuredMessage | null = null
@@ -190,7 +191,9 @@ export class ServerEngine implements Engine {
     private readonly listeners = new Set<(change: Change) => void>()
 
     /** How the page is drawn: dark, in software, in an upright window. `shows`: a class's wall asks for nothing, and its remote control shows no lab. */
-    constructor(private readonly drawn: () => { dark: boolean; plain: boolean; upright: boolean }, private readonly shows: "lab" | "wall" | "remote" = "lab") {}
+    constructor(private readonly drawn: () => { dark: boolean; plain: boolean; upright: boolean }, private readonly shows: "lab" | "wall" | "remote" = "lab") {
+        this.drives = shows === "lab" ? driversKey() : ""
+    }
 
     /** Have the lab tell its form and the values of its fields. */
     askForm(): void {
@@ -227,7 +230,7 @@ export class ServerEngine implements Engine {
 
     private get greeting(): Hello {
         const { page } = this, [labs, teacher, speaks, sounds, first_minute] = this.shows === "wall" ? [] : KEPT.map(kept)
-        return { is: "hello", page, site: siteOf(location), ...this.drawn(), labs, teacher, speaks, sounds, first_minute }
+        return { is: "hello", page, site: siteOf(location), ...this.drawn(), labs, teacher, speaks, sounds, first_minute, drives: this.drives }
     }
 
     /** Tell the lab that the page is drawn: a lab that nobody sees rests. */
@@ -285,7 +288,7 @@ export class ServerEngine implements Engine {
     }
 
     act(act: Act): void {
-        if (!this.lab?.own) return
+        if (!this.lab?.own || this.lab.plant) return
         if (act.do === "seek") this.seek(act.at)
         else {
             this.sought = null

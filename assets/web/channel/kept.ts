@@ -3,6 +3,7 @@
 
 const FIRST = "viser-user:"
 const MOST_CODES = 8
+const DRIVES = "onpath-drives"
 const LONGEST = 500 // [characters] of a value; the lab takes no longer ones
 const BY_CLASS: readonly string[] = ["labs", "teacher"] // differ between the classes of a site
 const NAMES: Record<string, string> = { labs: "onpath_sessions", teacher: "onpath_teacher" }
@@ -33,6 +34,17 @@ export function keep(key: string, value: string): void {
 export function keepLab(code: string): void {
     const codes = new Set([code, ...(kept("labs").match(/\b[a-z0-9]{12}\b/g) ?? [])])
     keep("labs", [...codes].slice(0, MOST_CODES).join(","))
+}
+
+/** The key of the page that drives a plant, which its address had: the tab keeps it. */
+export function driversKey(): string {
+    const [, key = ""] = /^#drive=([0-9a-f]{1,64})$/.exec(location.hash) ?? []
+    try {
+        if (key) sessionStorage.setItem(DRIVES, key)
+        else return sessionStorage.getItem(DRIVES) ?? ""
+        history.replaceState(history.state, "", location.pathname + location.search)
+    } catch {} // a browser without storage keeps it in the address
+    return key
 }
 
 /** Where this site is, without the page's place in it. */

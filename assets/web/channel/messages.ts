@@ -86,6 +86,8 @@ export interface Hello {
     sounds?: string
     /** see `Store`. */
     first_minute?: string
+    /** the key of the page that drives a plant, as its address had it. */
+    drives?: string
 }
 
 /** The page is drawn: comes every two seconds. A lab that nobody sees rests. */
@@ -215,6 +217,14 @@ export interface Lead {
     do: "ask_again" | "back" | "close_votes" | "delete" | "end" | "end_standing" | "forget" | "freeze" | "give_place" | "keep" | "keep_apart" | "let_go" | "let_in" | "next" | "open_votes" | "own_lab" | "play" | "put_back" | "record" | "remove" | "send_route" | "send_setup" | "send_step" | "set_aside" | "stop" | "thaw" | "throw_out" | "timer"
     /** number of the student whom it concerns, or of the phone. */
     member?: number
+}
+
+/** From the page that drives a plant: start it, stop it, or only a sign of life. */
+export interface DrivePlant {
+    is: "drive"
+    what: "beat" | "start" | "stop"
+    /** the torque after the end, of a start. */
+    at_fault?: "damp" | "hold" | "zero"
 }
 
 /** Tell what a sheet shows; the answer's `is` is its name. */
@@ -390,6 +400,7 @@ export type PageMessage =
     | DropFile
     | MakeFile
     | Lead
+    | DrivePlant
     | Ask
     | Freehand
     | Prefer
@@ -522,6 +533,23 @@ export interface Said {
     act: Command | null
 }
 
+/** What is known of the plant. */
+export interface PlantMessage {
+    /** "off" before the start; "starting" until its controller listens; "waiting" for its first measurement; "running";
+     * "ended". */
+    phase: "ended" | "off" | "running" | "starting" | "waiting"
+    /** the same in a sentence, and why it has ended. */
+    text: string
+    /** how late its torques were; empty before there are any. */
+    late: string
+    /** whether it can be stopped. */
+    live: boolean
+    /** whether it can be started. */
+    ready: boolean
+    /** its torque after the end, "zero", "hold" or "damp". */
+    at_fault: string
+}
+
 /** What the lab is called and set to: everything at first, then what has changed, at most ten times a second. */
 export interface StateMessage {
     is: "state"
@@ -586,6 +614,8 @@ export interface StateMessage {
     sent: string[]
     /** how many times the page had asked for a picture of the robots when it asked for the present one; 0 without one. */
     scene: number
+    /** that stands in the place of the right robot; null: none. */
+    plant: PlantMessage | null
 }
 
 /** The open step of a lesson, or its end; when another one is open, or anything is noted in it. A teacher's page has none.

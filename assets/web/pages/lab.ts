@@ -17,6 +17,7 @@ import { Form } from "../parts/form"
 import { Lens } from "../parts/lens"
 import { keptLook } from "../parts/look"
 import { OverStage } from "../parts/over_stage"
+import { Plant } from "../parts/plant"
 import { ask } from "../parts/question"
 import { Strip } from "../parts/strip"
 import { Sketch } from "../parts/sketch"
@@ -86,6 +87,7 @@ class Face {
         this.shell = new Shell(engine, texts, signal, reopen)
         document.body.prepend(this.stage.element, this.voice.element, this.column.element, this.element, ...this.shell.elements,
             new Downloads(engine.files, texts, signal).element)
+        if (engine.lab!.plant) new Plant(texts, engine, signal)
         engine.askForm()
         engine.on(change => {
             if (change === "form") this.showForms()
@@ -203,7 +205,7 @@ class Face {
             tell(this.readings[i]!.querySelector<HTMLElement>(".whose")!, name)
         })
         this.undo.hidden = !engine.lab!.undo
-        transport.element.classList.toggle("looks", !engine.lab!.own)
+        transport.element.classList.toggle("looks", !engine.lab!.own || engine.lab!.plant !== null)
         transport.invited = INVITES.includes(engine.lab!.said.invitation)
         this.enlarge(engine.lab!.presenting)
         if (this.klass) this.showClass()

@@ -29,6 +29,8 @@ const TITLES = {
     class: "class.title", teach: "class.teach",
 } as const
 type Opens = keyof typeof TITLES
+/** What can be opened beside a plant. */
+const BESIDE_PLANT = ["laws", "help", "display", "file"]
 
 type Message = Command | PageMessage
 
@@ -92,7 +94,7 @@ export class Shell {
             robots: async () => chooseRobot(texts, await engine.ask("robots"), lab.robot, send),
             laws: async () => aboutLaws(texts, await engine.ask("laws"), lab.laws),
             lessons: async () => chooseLesson(texts, await engine.ask("lessons"), send),
-            help: async () => help(texts, await engine.ask("help"), this.keys.known, () => pointAtStage(texts, engine)),
+            help: async () => help(texts, await engine.ask("help"), this.keys.known, lab.plant ? null : () => pointAtStage(texts, engine)),
             display: async () => display(texts, await engine.ask("display"), {
                 language: lab.language, large: lab.presenting, look: keptLook(), send, setLook: keepLook,
                 teach: this.isClassroom ? () => void this.open("teach") : null,
@@ -156,7 +158,8 @@ export class Shell {
         this.keep?.show(lab.shared)
         this.compare?.follow()
         this.panel.freeze(lab.frozen)
-        this.header.own = lab.own
+        this.header.own = lab.own && !lab.plant
+        this.header.teaches = !lab.plant
         const known = `${lab.language} ${lab.robot}`
         if (known === this.known) return
         this.known = known
@@ -216,7 +219,8 @@ export class Shell {
                 form!.reveal(name)
             },
         }))
-        const opens = Object.entries(TITLES).filter(([name]) => this.isClassroom || (name !== "class" && name !== "teach"))
+        const { plant } = this.engine.lab!
+        const opens = Object.entries(TITLES).filter(([name]) => (plant ? BESIDE_PLANT.includes(name) : this.isClassroom || (name !== "class" && name !== "teach")))
         const sheets = opens.map(([name, key]) => ({
             kind: phrase(texts, "search.kind_open"), label: phrase(texts, key), text: phrase(texts, `search.of_${name}`), go: () => void this.open(name as Opens),
         }))

@@ -20,6 +20,7 @@ export class Header {
     private readonly brand = made("span", "brand", "OnPath")
     /** Opens the card of the class. */
     readonly seat: HTMLButtonElement
+    private readonly lessons: HTMLButtonElement
     private readonly ofLab: HTMLButtonElement[] // in the menu
 
     constructor(private readonly texts: Texts, go: (place: Destination) => void) {
@@ -35,11 +36,17 @@ export class Header {
         menu.list.append(...this.ofLab, item("help"), item("display"))
         this.controls = button("controls")
         this.controls.ariaExpanded = "false"
-        const places = made("nav", "", this.controls, button("lessons"), button("search"), entitled(menu.button, more), menu.list)
+        this.lessons = button("lessons")
+        const places = made("nav", "", this.controls, this.lessons, button("search"), entitled(menu.button, more), menu.list)
         places.ariaLabel = "OnPath"
         this.seat = pressed("seat", "", () => go("class"))
         this.seat.hidden = true
         this.element.append(this.brand, this.seat, places)
+    }
+
+    /** Whether there are lessons. */
+    set teaches(teaches: boolean) {
+        this.lessons.hidden = !teaches
     }
 
     /** Whether the lab is one's own. */

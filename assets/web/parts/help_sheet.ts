@@ -7,6 +7,8 @@ import { pressed, SheetDialog } from "./sheet"
 
 /** What the help names, in this order. */
 const AIDS = ["hold", "pull", "bend", "aim", "lens", "chart", "view", "search"] as const
+/** Of these, what can be done with simulated robots alone. */
+const SIMULATED: readonly string[] = ["hold", "pull", "bend", "chart"]
 /** The keys by what they are for; the names of others begin with one of these. */
 const KINDS: Record<string, readonly string[]> = {
     time: ["run", "hold", "reset", "back", "forward", "go_on", "undo_go_on"],
@@ -16,14 +18,15 @@ const KINDS: Record<string, readonly string[]> = {
     rest: ["slowly", "earlier", "summary", "view", "lesson"],
 }
 
-/** `point`: shows on the stage what is what. */
-export function help(texts: Texts, { glossary }: HelpSheet, keys: readonly ShownKey[], point: () => void): SheetDialog {
+/** `point`: shows on the stage what is what; null beside a plant. */
+export function help(texts: Texts, { glossary }: HelpSheet, keys: readonly ShownKey[], point: (() => void) | null): SheetDialog {
     const sheet = new SheetDialog(texts, "help", phrase(texts, "help.title"))
     const show = pressed("main", phrase(texts, "help.point"), () => {
         sheet.close()
-        point()
+        point?.()
     })
-    const aids = made("dl", "aids", ...AIDS.flatMap(name => [made("dt", "", phrase(texts, `aid.${name}`)), made("dd", "", phrase(texts, `aid.${name}_means`))]))
+    show.hidden = !point
+    const aids = made("dl", "aids", ...AIDS.flatMap(name => (point || !SIMULATED.includes(name) ? [made("dt", "", phrase(texts, `aid.${name}`)), made("dd", "", phrase(texts, `aid.${name}_means`))] : [])))
     sheet.body.append(aids, show, keyTable(texts, keys), glossaryOf(texts, "glossary.to_terms", glossary, "plain", "term"),
         glossaryOf(texts, "glossary.to_words", [...glossary].sort((a, b) => a.term.localeCompare(b.term)), "term", "plain"))
     sheet.open(show)
