@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing_extensions import override
 
 from onpath.app.lab.lab import Command, Lab
+from onpath.app.lab.plant_state import PlantState
 from onpath.app.lab.shown_log import ShownLog
 
 
@@ -22,6 +23,10 @@ class ShowLog(Command):
     is_whole: bool = True
 
     @override
+    def suits(self, lab: Lab, plant: PlantState) -> bool:
+        return True
+
+    @override
     def apply(self, lab: Lab) -> None:
         lab.log = self.log
         key = "log.shown" if self.is_whole else "log.shown_in_part"
@@ -33,6 +38,10 @@ class ShowLog(Command):
 @dataclass(frozen=True, slots=True)
 class RemoveLog(Command):
     """Remove the log from the plots."""
+
+    @override
+    def suits(self, lab: Lab, plant: PlantState) -> bool:
+        return True
 
     @override
     def apply(self, lab: Lab) -> None:

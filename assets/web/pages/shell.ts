@@ -30,7 +30,7 @@ const TITLES = {
 } as const
 type Opens = keyof typeof TITLES
 /** What can be opened beside a plant. */
-const BESIDE_PLANT = ["laws", "help", "display", "file"]
+const BESIDE_PLANT = ["laws", "help", "display", "file", "log"]
 
 type Message = Command | PageMessage
 
