@@ -29,7 +29,7 @@ from tests.bench.simulated_browser import MOVING, SEES
 
 MOST_CODES = 8
 PATIENCE = 60.0  # [s]; only ends a test that would hang
-KEPT = ("teacher", "speaks", "sounds", "first_minute")
+KEPT = ("teacher", "speaks", "sounds", "first_minute", "drives")
 NEWS = 0.05  # [s] for which the page's own websocket is read before viser's
 
 
