@@ -22,8 +22,11 @@ from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import Sketch, SketchShape
 from onpath.lessons.sides import ROLES
 from onpath.lessons.words import Words
+from onpath.models.arrays import Array
 
 MOST_POINTS = 40  # of a sketch
+FEWEST = 5  # sketches that have a median, which is drawn with the band of the middle half of them
+QUARTILES = 0.25, 0.5, 0.75
 Numbered = tuple[tuple[int, Answer], ...]
 
 
@@ -113,9 +116,11 @@ def sketches_view(
     names = [(SLATE.hex, words("class.predicted"))]
     if truth is not None:
         names += [(OF_SIDE[side].hex, robots[role]) for side, role in ROLES.items()]
+    bands = [[] if picks.picked else _band(block, frame, sketches) for sketches in shown]
+    names += [(SLATE.hex, words("class.median"))] if any(bands) else []
     plots = [
-        (each.title, _lines(block, frame, sketches, truth, bool(picks.picked)), each.facts)
-        for each, sketches in zip(rounds, shown, strict=True)
+        (each.title, _lines(block, frame, sketches, truth, bool(picks.picked)), each.facts, band)
+        for each, sketches, band in zip(rounds, shown, bands, strict=True)
     ]
     small = shown[-1] if not picks.picked and len(shown[-1]) > 1 else ()
     return render(
@@ -149,6 +154,28 @@ def _groups(block: Sketch, number: int, found: Distribution, picks: Picks, words
         else words("class.drew", count=len(numbers), name=shape.name, example=numbers[0])
         for shape, numbers in ordered
     )
+
+
+def quartiles(sketches: Sequence[Answer], seconds: float) -> tuple[Array, Array]:
+    """The quartiles of the curves at equal times.
+
+    Returns:
+        Times, (n,), [s], and the lower quartile, the median and the upper one then, (3, n).
+    """
+    times = np.linspace(0.0, seconds, MOST_POINTS + 1)
+    values = [np.interp(times, each.times, each.values) for each in sketches]
+    return times, np.quantile(np.array(values), QUARTILES, axis=0)
+
+
+def _band(block: Sketch, frame: PlotFrame, sketches: Numbered) -> list[str]:
+    """The outline of the middle half of the curves, and their median; nothing for a few."""
+    if len(sketches) < FEWEST:
+        return []
+    times, (low, middle, high) = quartiles([each for _, each in sketches], block.seconds)
+    outline = [*zip(times, low, strict=True), *zip(times[::-1], high[::-1], strict=True)]
+    lines = outline, list(zip(times, middle, strict=True))
+    places = [[_position(block, frame, *map(float, each)) for each in line] for line in lines]
+    return [" ".join(f"{x:.0f},{y:.0f}" for x, y in line) for line in places]
 
 
 def _lines(

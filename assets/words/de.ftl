@@ -131,8 +131,8 @@ lesson-not_quite = Nicht ganz.
 lesson-second_title = Zweiter Versuch
 lesson-second_try = diese Frage ist schon beantwortet; der zweite Versuch fragt etwas anderes
 lesson-once_more = Überleg noch einmal und antworte ein zweites Mal: Dann wird die richtige Antwort gezeigt.
-lesson-discuss = Besprich die Frage mit jemandem neben dir und beantworte sie dann noch einmal.
-lesson-discuss_letter = Besprich die Frage mit jemandem neben dir und beantworte sie dann noch einmal. Deine erste Antwort war { $letter }.
+lesson-discuss = Such jemanden, der anders geantwortet hat, besprecht die Frage, und antworte dann noch einmal.
+lesson-discuss_letter = Du hast { $letter } geantwortet. Such jemanden, der anders geantwortet hat, besprecht die Frage, und antworte dann noch einmal.
 lesson-second = Nach der Diskussion:
 lesson-drawn_again = Du hast die Kurve noch einmal gezeichnet
 lesson-unknown = Du hast das beantwortet, als die Lektion noch anders war. Die Antworten haben sich seitdem geändert; welche du gewählt hast, lässt sich nicht mehr sagen.
@@ -434,6 +434,7 @@ class-truth = Wirklichkeit zeigen
 class-no_prediction = In diesem Schritt wird nichts gefragt.
 class-no_truth = Was wirklich geschieht, ist noch nicht bekannt: Es muss erst in einem Labor geschehen sein.
 class-predicted = Vorhersagen
+class-median = gestrichelt: der Median, um ihn herum die mittlere Hälfte der Vorhersagen
 class-given =
     { $away ->
         [0] { $given } von { $here } Anwesenden haben geantwortet.

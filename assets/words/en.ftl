@@ -133,8 +133,8 @@ lesson-not_quite = Not quite.
 lesson-second_title = Second try
 lesson-second_try = this question has been answered; the second try asks something else
 lesson-once_more = Think it over and answer once more: then the right answer is shown.
-lesson-discuss = Discuss the question with your neighbour, then answer it again.
-lesson-discuss_letter = Discuss the question with your neighbour, then answer it again. Your first answer was { $letter }.
+lesson-discuss = Find somebody who answered differently and discuss it, then answer again.
+lesson-discuss_letter = You answered { $letter }. Find somebody who answered differently and discuss it, then answer again.
 lesson-second = After the discussion:
 lesson-drawn_again = you drew the curve again
 lesson-unknown = You answered this in an earlier version of the lesson. Its answers have changed since, so the lab cannot tell which one you chose.
@@ -436,6 +436,7 @@ class-truth = Show the truth
 class-no_prediction = Nothing is asked in this step.
 class-no_truth = What really happens is not known yet: it must first happen in a lab.
 class-predicted = predictions
+class-median = dashed: the median, with the middle half of the predictions around it
 class-given =
     { $away ->
         [0] { $given } of { $here } here have answered.
