@@ -421,12 +421,24 @@ def _asked(step: Step) -> dict[str, object]:
             b.second and b.second.without_words for b in blocks if isinstance(b, Choice | Quiz)
         ],
         "axes to draw on": [
-            replace(b, question="", usual="", answer="", ask="", reasons=(), hidden=(), shapes=())
+            replace(
+                b,
+                question="",
+                usual="",
+                answer="",
+                ask="",
+                reasons=(),
+                hidden=(),
+                shapes=(),
+                features=(),
+            )
             for b in blocks
             if isinstance(b, Sketch)
         ],
         "shapes of curves": [
-            [shape.without_words for shape in b.shapes] for b in blocks if isinstance(b, Sketch)
+            [shape.without_words for shape in (*b.shapes, *b.features)]
+            for b in blocks
+            if isinstance(b, Sketch)
         ],
         "number of reasons or hidden words": [
             (b.why, len(b.reasons), len(b.hidden)) for b in step.predictions()

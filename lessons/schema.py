@@ -129,24 +129,28 @@ class Choice(Data, frozen=True, tag="choice", tag_field="kind"):
 
 
 class SketchShape(Data, frozen=True):
-    """A kind of curve that students draw, by features that can be seen in it.
+    """A kind of curve that students draw, or a feature of one, by what can be seen in it.
 
     Attributes:
-        name: completes "12 drew …".
+        name: of a kind, completes "12 drew …"; of a feature, what is seen, such as "two peaks".
         peaks: fewest and most peaks, see `lessons.measures.shapes`; None for any number.
         highest: lowest and highest value of its highest point, in the quantity's unit.
+        lowest: the same of its lowest point; a bound of 0 asks for a sign.
         at: a time [s], and the lowest and the highest value then; each of these.
+        level: two times [s], and the lowest and the highest value between them; each of these.
     """
 
     name: str
     peaks: tuple[int, int] | None = None
     highest: tuple[float, float] | None = None
+    lowest: tuple[float, float] | None = None
     at: tuple[tuple[float, float, float], ...] = ()
+    level: tuple[tuple[float, float, float, float], ...] = ()
 
     @property
     def without_words(self) -> tuple[object, ...]:
         """Its features, the same in all languages."""
-        return self.peaks, self.highest, self.at
+        return self.peaks, self.highest, self.lowest, self.at, self.level
 
 
 class Sketch(Data, frozen=True, tag="sketch", tag_field="kind"):
@@ -161,6 +165,8 @@ class Sketch(Data, frozen=True, tag="sketch", tag_field="kind"):
         answer: for the teacher, what the true curve is like, and why.
         ask: for the teacher, what to ask the class before it is seen.
         shapes: by which the curves of a class are grouped; the first that fits is a curve's.
+        features: of which a student is told, after the run, whether the drawn curve has them, and
+            the true one.
         reasons, why, hidden: as in `Choice`.
     """
 
@@ -174,6 +180,7 @@ class Sketch(Data, frozen=True, tag="sketch", tag_field="kind"):
     answer: str = ""
     ask: str = ""
     shapes: tuple[SketchShape, ...] = ()
+    features: tuple[SketchShape, ...] = ()
     reasons: tuple[str, ...] = ()
     why: bool = False
     hidden: tuple[str, ...] = ()

@@ -30,6 +30,8 @@ def block_data(part: StepPart, lesson: Lesson, index: int, words: Words) -> dict
     block, data = part.block, dict[str, Any](kind=part.kind)
     if isinstance(block, Sketch):
         data |= sketch_data(block, lesson.laws_shown(index), words)
+        if part.told:
+            data["features"] = [msgspec.to_builtins(each) for each in block.features]
     elif isinstance(block, Choice | Quiz) and part.told:
         data["right"] = [option.right for option in block.options].index(True)
     elif isinstance(block, NumberQuestion) and part.told:
@@ -100,7 +102,7 @@ def sketch_data(block: Sketch, laws: dict[str, str], words: Words) -> dict[str, 
     Args:
         laws: control laws under which the prediction is tested.
     """
-    names = ("quantity", "seconds", "top", "bottom")
+    names = ("quantity", "robot", "seconds", "top", "bottom")
     return {
         "kind": "sketch",
         **{name: getattr(block, name) for name in names},

@@ -15,8 +15,29 @@ HEIGHT = 0.1
 
 def shape_of(sketch: Sketch, drawn: Answer) -> SketchShape | None:
     """The first shape of a sketch that a curve has; None if none fits."""
+    return next(
+        (each for each in sketch.shapes if has(sketch, each, drawn.times, drawn.values)), None
+    )
+
+
+def has(
+    sketch: Sketch, shape: SketchShape, times: Sequence[float], values: Sequence[float]
+) -> bool:
+    """Whether a curve has all that a shape names; as `has` in assets/web/lessons/features.ts."""
     height = HEIGHT * (sketch.top - sketch.bottom)
-    return next((each for each in sketch.shapes if _fits(each, drawn, height)), None)
+    if shape.peaks and not shape.peaks[0] <= peaks_of(values, height) <= shape.peaks[1]:
+        return False
+    ends = (shape.highest, max(values)), (shape.lowest, min(values))
+    if not all(bounds is None or bounds[0] <= value <= bounds[1] for bounds, value in ends):
+        return False
+
+    def within(times_then: Sequence[float], low: float, high: float) -> bool:
+        return all(low <= float(value) <= high for value in np.interp(times_then, times, values))
+
+    return all(within([time], low, high) for time, low, high in shape.at) and all(
+        within([start, *(t for t in times if start < t < end), end], low, high)
+        for start, end, low, high in shape.level
+    )
 
 
 def peaks_of(values: Sequence[float], height: float) -> int:
@@ -27,14 +48,3 @@ def peaks_of(values: Sequence[float], height: float) -> int:
         if abs(value - turn) >= height:
             count, climbs, turn = count + climbs, not climbs, value
     return count
-
-
-def _fits(shape: SketchShape, drawn: Answer, height: float) -> bool:
-    values = drawn.values
-    if shape.peaks and not shape.peaks[0] <= peaks_of(values, height) <= shape.peaks[1]:
-        return False
-    if shape.highest and not shape.highest[0] <= max(values) <= shape.highest[1]:
-        return False
-    return all(
-        low <= float(np.interp(time, drawn.times, values)) <= high for time, low, high in shape.at
-    )

@@ -59,19 +59,21 @@ def prediction_faults(prediction: Prediction) -> Iterator[str]:
         low, high = prediction.bottom, prediction.top
         if not -HIGHEST <= low < high <= HIGHEST:
             yield f"top = {high:g} must be above bottom = {low:g}, both within ±{HIGHEST:g}"
-        for shape in prediction.shapes:
+        for shape in (*prediction.shapes, *prediction.features):
             yield from _shape_faults(shape, prediction)
     else:
         yield from choice_faults(prediction)
 
 
 def _shape_faults(shape: SketchShape, sketch: Sketch) -> Iterator[str]:
-    if not shape.name.strip() or shape.without_words == (None, None, ()):
+    if not shape.name.strip() or not any(shape.without_words):
         yield f"shape {shape.name!r}: it needs a name, and a feature"
-    ranges = [*filter(None, (shape.peaks, shape.highest)), *(each[1:] for each in shape.at)]
+    ranges = [*filter(None, (shape.peaks, shape.highest, shape.lowest))]
+    ranges += [(low, high) for *_, low, high in (*shape.at, *shape.level)]
     if any(low > high for low, high in ranges):
         yield f"shape {shape.name!r}: each range is from less to more"
-    if any(not 0 <= time <= sketch.seconds for time, *_ in shape.at):
+    times = [*((time, time) for time, *_ in shape.at), *(each[:2] for each in shape.level)]
+    if any(not 0 <= first <= last <= sketch.seconds for first, last in times):
         yield f"shape {shape.name!r}: a time is within the {sketch.seconds:g} s of the axis"
 
 

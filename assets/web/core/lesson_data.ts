@@ -139,6 +139,16 @@ export interface TaskData {
     exploratory?: boolean
 }
 
+/** Something that can be seen in a curve, see `SketchShape` in lessons/schema.py. */
+export interface SketchFeature {
+    name: string
+    peaks: [number, number] | null
+    highest: [number, number] | null
+    lowest: [number, number] | null
+    at: [number, number, number][]
+    level: [number, number, number, number][]
+}
+
 export interface SketchData {
     kind: "sketch"
     quantity: string
@@ -148,6 +158,10 @@ export interface SketchData {
     seconds: number
     top: number
     bottom: number
+    /** The robot that is predicted. */
+    robot?: Robot
+    /** What its author looks for in a curve; from a lab, once the run is over. */
+    features?: SketchFeature[]
     /** Of the circle that is followed, [m]; null for another path. */
     radius?: number | null
 }

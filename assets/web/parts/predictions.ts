@@ -5,6 +5,7 @@ import { draftOf, keepDraft } from "../core/drafts"
 import type { BlockData, PageData, Script, SketchData, StepData, Answer, Curves } from "../core/lesson_data"
 import { phrase, significant, type Texts } from "../core/words"
 import { given, predicted, type Notes } from "../lessons/notes"
+import { has } from "../lessons/features"
 import type { Student } from "../lessons/student"
 import { judged, repliedTo } from "./asked"
 import { Chart, type Axes } from "./chart"
@@ -156,7 +157,7 @@ export class Comparison {
     private readonly chart: Chart | null = null
     private readonly again: HTMLElement
 
-    constructor(page: PageData, private readonly prediction: Prediction, private readonly notes: Notes) {
+    constructor(private readonly page: PageData, private readonly prediction: Prediction, private readonly notes: Notes) {
         const { data } = prediction
         this.again = made("p", "", phrase(page, "site.again"))
         this.again.hidden = true
@@ -175,6 +176,18 @@ export class Comparison {
     /** The verdict on a choice, in words. */
     get words(): string[] {
         return this.chart ? [] : this.elements.flatMap(each => [...each.children]).map(each => each.textContent)
+    }
+
+    /** What can be seen in the drawn curve and in the true one, once the run is over; null if nothing is looked for. */
+    seen(truth: Curves | undefined): HTMLElement | null {
+        const { page, answer, prediction: { data } } = this, own = curveOf(answer)
+        if (data.kind !== "sketch" || !data.features?.length || !truth || !own) return null
+        const happened = { times: truth.times, values: truth[data.robot ?? "tracker"] }
+        const told = (is: boolean) => phrase(page, is ? "sketch.seen" : "sketch.unseen")
+        const rows = data.features.map(each => made("tr", "", made("th", "", each.name), ...[own, happened].map(curve => made("td", "", told(has(data, each, curve))))))
+        rows.forEach(row => row.querySelector("th")!.setAttribute("scope", "row"))
+        const head = ["sketch.looked_for", "sketch.own", "sketch.run"].map(key => made("th", "", phrase(page, key)))
+        return made("table", "features", made("thead", "", made("tr", "", ...head)), made("tbody", "", ...rows))
     }
 
     /** Draw what happened, too; if that is not kept, the page says how to see it again. */

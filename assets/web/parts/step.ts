@@ -187,7 +187,12 @@ export class StepView {
         if (this.played && happened && !robots.playing)
             robots.tell([phrase(page, "lesson.happened"), ...this.compared?.words ?? []].join(" "))
         this.played = robots.playing
-        if (happened && !waits && !robots.playing) this.draw(notes.truths[String(prediction?.step)])
+        section.querySelector(".seen")?.remove()
+        if (!happened || waits || robots.playing) return
+        const truth = notes.truths[String(prediction?.step)]
+        this.draw(truth)
+        const seen = this.compared?.seen(truth)
+        if (seen) this.beside(made("div", "seen op-box", seen))
     }
 
     /** Draw what is happening, or has happened, beside what was predicted. */
@@ -211,7 +216,12 @@ export class StepView {
         const box = made("div", "compared", ...this.compared.elements)
         if (sketched) return beneath.append(box)
         box.classList.add("op-box")
-        const play = section.querySelector(".play")
+        this.beside(box)
+    }
+
+    /** Put what has become of a prediction below the button that plays its run. */
+    private beside(box: HTMLElement): void {
+        const { section } = this.places, play = section.querySelector(".play")
         if (play) play.after(box)
         else (section.querySelector(".beside") ?? section.querySelector(".words")!).append(box)
     }

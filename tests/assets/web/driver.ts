@@ -2,6 +2,7 @@
 
 import { createInterface } from "node:readline"
 import { runInThisContext } from "node:vm"
+import { has as hasFeature } from "../../../assets/web/lessons/features"
 import { lengthOf, products } from "../../../assets/web/simulation/fit"
 import { motions } from "../../../assets/web/simulation/poles"
 import { inkOf, resize, window } from "./page"
@@ -32,7 +33,7 @@ async function answer({ open, url, evaluate, argument }: Request): Promise<unkno
 // A page goes on after an error of its script.
 const complaints: string[] = []
 for (const event of ["uncaughtException", "unhandledRejection"]) process.on(event, error => complaints.push(String(error)))
-Object.assign(globalThis, { complaints, inkOf, lengthOf, motions, products, resize })
+Object.assign(globalThis, { complaints, hasFeature, inkOf, lengthOf, motions, products, resize })
 
 let turn: Promise<void> = Promise.resolve()
 createInterface({ input: process.stdin }).on("line", line => {
