@@ -13,6 +13,7 @@ _PLAIN = (
         "lesson.no_number",
         "answer.check",
         "answer.keep",
+        "answer.before",
         "answer.price",
         "sketch.looked_for",
         "sketch.own",

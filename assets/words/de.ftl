@@ -179,6 +179,7 @@ answer-type_words = Deine Antwort, mit eigenen Worten
 answer-type_formula = Deine Formel in { $names }
 answer-check = Prüfen
 answer-price = Beim ersten Mal richtig zählt ganz, beim zweiten halb.
+answer-before = Und die Antwort auf die Frage davor:
 answer-price_followed = Gleich richtig zählt ganz. Nach einer falschen Antwort wird etwas anderes gefragt, das zählt halb.
 answer-price_second = Richtig zählt halb.
 answer-keep = Antwort behalten

@@ -181,6 +181,7 @@ answer-type_words = Your answer, in your own words
 answer-type_formula = Your formula in { $names }
 answer-check = Check
 answer-price = Right at the first try counts in full, at the second half.
+answer-before = And the answer to the question before:
 answer-price_followed = Right at once counts in full. After a wrong answer something else is asked, which counts half.
 answer-price_second = A right answer counts half.
 answer-keep = Keep my answer

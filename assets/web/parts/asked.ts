@@ -36,9 +36,9 @@ export function repliedTo(page: PageData, reply: Element | null, followed = fals
 }
 
 /** Which option of a question is right, and why. */
-function rightOne(page: PageData, element: Element, right: number): HTMLElement[] {
+function rightOne(page: PageData, element: Element, right: number, title = "report.right"): HTMLElement[] {
     const answer = element.querySelector(`[data-answer="${right}"]`)!.cloneNode(true)
-    return [made("p", "", made("b", "", phrase(page, "report.right"))), made("div", "", ...answer.childNodes)]
+    return [made("p", "", made("b", "", phrase(page, title))), made("div", "", ...answer.childNodes)]
 }
 
 /** Make the second try at a question answerable, which is asked once the question was missed. Its answer is followed by
@@ -46,7 +46,7 @@ function rightOne(page: PageData, element: Element, right: number): HTMLElement[
 export function askAgain(page: PageData, element: HTMLElement, question: { element: HTMLElement; data: ChoiceData; isMissed: () => boolean }, key: string,
     student: Student): () => void {
     const { data } = question
-    const show = ask(page, element, data.second!, key, student, () => (data.right === undefined ? [] : rightOne(page, question.element, data.right)))
+    const show = ask(page, element, data.second!, key, student, () => (data.right === undefined ? [] : rightOne(page, question.element, data.right, "answer.before")))
     const reveal = () => {
         element.hidden = !question.isMissed()
         show()

@@ -312,7 +312,7 @@ function put(element: HTMLElement, html: string): void {
 
 /** Whether the script has made an element, not the server. */
 function isOurs(element: Element): boolean {
-    return element.matches(".compared, .seen, .symbols, .before, .form")
+    return element.matches(".compared, .judged-by, .symbols, .before, .form")
 }
 
 function controlsOf(element: Element): HTMLElement[] {

@@ -187,12 +187,12 @@ export class StepView {
         if (this.played && happened && !robots.playing)
             robots.tell([phrase(page, "lesson.happened"), ...this.compared?.words ?? []].join(" "))
         this.played = robots.playing
-        section.querySelector(".seen")?.remove()
+        section.querySelector(".judged-by")?.remove()
         if (!happened || waits || robots.playing) return
         const truth = notes.truths[String(prediction?.step)]
         this.draw(truth)
         const seen = this.compared?.seen(truth)
-        if (seen) this.beside(made("div", "seen op-box", seen))
+        if (seen) this.beside(made("div", "judged-by op-box", seen))
     }
 
     /** Draw what is happening, or has happened, beside what was predicted. */

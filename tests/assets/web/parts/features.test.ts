@@ -28,7 +28,7 @@ test("features are told after the run, of the robot that was predicted", () => {
     const view = new StepView(page, 1, student, robots, { section, beneath: document.querySelector("#beneath")!, isWide: () => true })
     const rows = () => {
         view.run()
-        return [...section.querySelectorAll(".seen tbody tr")].map(row => [...row.children].map(cell => cell.textContent))
+        return [...section.querySelectorAll(".judged-by tbody tr")].map(row => [...row.children].map(cell => cell.textContent))
     }
     assert.deepEqual(rows(), []) // nothing is predicted
     notes.given = [{ item: "0", answer: DRAWN }]
