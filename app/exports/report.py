@@ -135,9 +135,9 @@ def _record(chapter: Chapter, words: Words) -> ChapterRecord:
         tasks=[(task, _passed(task, notes.tasks.get(task.id), words)) for task in tasks],
         questions=[
             (quiz, notes.quiz.get(key), key in notes.unknown)
-            for key, quiz in quizzes(lesson).items()
+            for key, quiz in quizzes(lesson, notes).items()
         ],
-        numbers=[(block, notes.numbers.get(key)) for key, block in numbers(lesson).items()],
+        numbers=[(block, notes.numbers.get(key)) for key, block in numbers(lesson, notes).items()],
         written=[
             (block, notes.written.get(key, "")) for key, block in open_questions(lesson).items()
         ],

@@ -22,8 +22,10 @@ from onpath.lessons.schema import (
     Quiz,
     Sketch,
 )
+from onpath.lessons.second_try import second_at, second_item
 
 T = TypeVar("T")
+NOTHING = Notes()
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,14 +89,14 @@ def predictions(lesson: Lesson) -> dict[str, Prediction]:
     return {key: asked[0] for key, asked in steps if asked}
 
 
-def quizzes(lesson: Lesson) -> dict[str, Quiz]:
-    """Quizzes by note key: step and block."""
-    return _of_kind(lesson, Quiz)
+def quizzes(lesson: Lesson, notes: Notes) -> dict[str, Quiz]:
+    """Quizzes by note key, step and block, and the second tries among them that were made."""
+    return _of_kind(lesson, Quiz, notes)
 
 
-def numbers(lesson: Lesson) -> dict[str, NumberQuestion]:
-    """Questions whose answer is a number, by note key: step and block."""
-    return _of_kind(lesson, NumberQuestion)
+def numbers(lesson: Lesson, notes: Notes) -> dict[str, NumberQuestion]:
+    """Questions whose answer is a number, by note key; see `quizzes`."""
+    return _of_kind(lesson, NumberQuestion, notes)
 
 
 def open_questions(lesson: Lesson) -> dict[str, OpenQuestion | Derivation]:
@@ -102,16 +104,22 @@ def open_questions(lesson: Lesson) -> dict[str, OpenQuestion | Derivation]:
     return _of_kind(lesson, OpenQuestion) | _of_kind(lesson, Derivation)
 
 
-def _of_kind(lesson: Lesson, kind: type[T]) -> dict[str, T]:
-    steps = enumerate(lesson.steps)
-    blocks = [(f"{i}.{j}", each) for i, step in steps for j, each in enumerate(step.blocks)]
-    return {key: block for key, block in blocks if isinstance(block, kind)}
+def _of_kind(lesson: Lesson, kind: type[T], notes: Notes = NOTHING) -> dict[str, T]:
+    found = dict[str, T]()
+    for i, step in enumerate(lesson.steps):
+        for j, block in enumerate(step.blocks):
+            item = second_item(i, j)
+            second = second_at(lesson.steps, item) if item in notes.by_item else None
+            each = {f"{i}.{j}": block, item: second}
+            found |= {key: asked for key, asked in each.items() if isinstance(asked, kind)}
+    return found
 
 
 def fitting(lesson: Lesson, notes: Notes) -> tuple[Notes, int]:
     """Notes that match a lesson, which may have changed since, and the number that do not."""
     asked = predictions(lesson)
-    blocks = {**asked, **quizzes(lesson), **numbers(lesson), **open_questions(lesson)}
+    questions = {**quizzes(lesson, notes), **numbers(lesson, notes), **open_questions(lesson)}
+    blocks = {**asked, **questions}
     tasks = {task.id for task in lesson.tasks()}
     truths = {k: t for k, t in notes.truths.items() if k in asked and _is_true_of(asked[k], t)}
     given = tuple(e for e in notes.given if _fits(e, blocks.get(e.item), e.item in tasks))

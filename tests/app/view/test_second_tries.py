@@ -3,17 +3,20 @@ told; a lab sends none of it earlier, and a prediction is not judged before its 
 
 from __future__ import annotations
 
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from onpath.app.exports.report import report
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.view.lesson_message import lesson_message
 from onpath.app.view.lesson_view import LessonView
+from onpath.app.view.report_facts import fitting
 from onpath.lessons.course import read_course
 from onpath.lessons.parse import read_lesson
 from onpath.lessons.problems import LessonError
@@ -114,6 +117,10 @@ def test_its_own_answer_comes_first_then_the_second_try_then_the_truth(
     notes = lab.lessons.notes
     do(lab, tried(second, step, right=not right), c.AnswerQuiz(block=0, option=0))
     assert lab.lessons.notes == notes  # both are over
+    record = report(lab.lessons, "", datetime(2026, 1, 1, tzinfo=UTC)).decode()
+    assert (("FIVE" if second == FIGURE else "UP") in record) and own in record
+    lesson = lab.lessons.lesson
+    assert lesson is not None and fitting(lesson, notes) == (notes, 0)
 
 
 def test_neither_a_right_answer_nor_an_open_vote_is_followed_by_one(tmp_path: Path) -> None:
