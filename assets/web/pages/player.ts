@@ -50,6 +50,7 @@ export class Player implements Robots {
             this.placePlots()
             this.view?.formulas()
         })
+        addEventListener("toggle", () => this.view?.formulas(), { capture: true })
         addEventListener("beforeprint", () => this.sections[0]!.before(this.head)) // above all steps
         addEventListener("afterprint", () => this.section.prepend(this.head))
         document.querySelector("main")!.addEventListener("keydown", event => {

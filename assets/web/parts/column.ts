@@ -90,6 +90,7 @@ export class Column implements Robots {
         this.element.addEventListener("click", event => this.press(event))
         addEventListener("keydown", event => this.key(event), { signal: ended })
         addEventListener("resize", () => this.view?.formulas(), { signal: ended })
+        addEventListener("toggle", () => this.view?.formulas(), { signal: ended, capture: true })
         this.student.changed = () => this.show()
     }
 

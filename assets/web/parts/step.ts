@@ -137,7 +137,8 @@ export class StepView {
         dispatchEvent(new Event("resize"))
     }
 
-    /** Shrink formulas that are wider than the column while they can be read; others are scrolled, also by keys. */
+    /** Shrink formulas that are wider than the column while they can be read; others, and those in a text, are scrolled, also
+     * by keys. */
     formulas(): void {
         for (const formula of this.places.section.querySelectorAll<MathMLElement>("math[display=block]")) {
             formula.style.fontSize = ""
@@ -145,6 +146,14 @@ export class StepView {
             if (share < 1) formula.style.fontSize = `${Math.max(0.98 * share, SMALLEST)}em`
             formula.tabIndex = formula.scrollWidth > formula.clientWidth ? 0 : -1
         }
+        const within = [...this.places.section.querySelectorAll<HTMLElement>(".math.inline:not(td *)")]
+        for (const formula of within) formula.classList.remove("long")
+        const isLong = within.map(formula => formula.offsetWidth > formula.closest("p, li, div")!.clientWidth)
+        within.forEach((formula, i) => {
+            formula.classList.toggle("long", isLong[i])
+            if (isLong[i]) formula.tabIndex = 0
+            else formula.removeAttribute("tabindex")
+        })
     }
 
     /** Show what was committed, and as much of a run as may be seen: nothing before the prediction is made, the text
