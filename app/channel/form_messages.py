@@ -114,7 +114,6 @@ class FormGroup(Struct, frozen=True, omit_defaults=True, kw_only=True):
     Attributes:
         level: "first": seen at once; "deeper": to be opened.
         states: names of the fields whose values make its line while it is closed.
-        rest: its line while nothing in it is on.
     """
 
     name: str
@@ -122,7 +121,6 @@ class FormGroup(Struct, frozen=True, omit_defaults=True, kw_only=True):
     fields: tuple[FormField, ...]
     level: Literal["first", "deeper"] = "first"
     states: tuple[str, ...] = ()
-    rest: str = ""
 
 
 class FormMessage(

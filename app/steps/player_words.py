@@ -32,7 +32,14 @@ _PLAIN = (
     *("answer.sending", "answer.sent"),
     *("lesson.committed", "lesson.drawn", "lesson.skipped", "lesson.passed", "report.right"),
     "lesson.happened",
-    *("site.draw_first", "site.skipped", "site.again", "site.link_only_lab", "site.symbols"),
+    *(
+        "site.draw_first",
+        "site.draw_keys",
+        "site.skipped",
+        "site.again",
+        "site.link_only_lab",
+        "site.symbols",
+    ),
 )
 _FILLED = {
     "chart.point": ("time",),

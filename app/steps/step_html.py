@@ -109,6 +109,9 @@ def step_html(
         plays: whether the page can play the step's script.
         lacking: what the page lacks here, in words; may be empty.
     """
+    if lesson.steps[index].kind == "task":  # what is to be done is seen at once
+        first = next(part for part in parts if part.kind == "task")
+        parts = [first, *(part for part in parts if part is not first)]
     return part_of_page(
         "step/step.html",
         lesson=lesson,

@@ -71,7 +71,7 @@ PULLS = ("path's plane", "horizontal plane")
 NO_STEP = FormMessage(place="step", groups=())
 GROUPS: Mapping[str, Literal["first", "deeper"]] = {
     "setup": "first",
-    **dict.fromkeys(("hand", "gains", "reality", "view", "robot"), "deeper"),
+    **dict.fromkeys(("hand", "gains", "view", "robot"), "deeper"),
 }
 """Groups of the form in their order, with their levels."""
 GROUP_OF = {
@@ -79,17 +79,17 @@ GROUP_OF = {
     **dict.fromkeys(("basic", "robot", "path"), "robot"),
     "gains": "gains",
     "task": "gains",
-    "realism": "reality",
+    "realism": "hand",
     "view": "view",
 }
 """Group of a declaration -> group of the form."""
 GROUP_OF_OTHERS = {
     **dict.fromkeys(("pulse", "reset", "start_on_path", "show_start", "wall_forces"), "hand"),
+    "identify": "hand",
     **dict.fromkeys(("alpha_note", "deflection", "pull", "show_tips"), "robot"),
     **dict.fromkeys(("poles", "pole_plane", "defaults"), "gains"),
     **dict.fromkeys(("file", "add", "remove", "point", "point_z1", "point_z2"), "gains"),
     "least_rank": "gains",
-    "identify": "reality",
     **dict.fromkeys((*DRAWINGS, "tube_sizes", "rank_scale", "show_zone", "view"), "view"),
 }
 """Group of each field that is no declared setting."""
@@ -264,8 +264,8 @@ def _lab_form(lab: _Lab, words: Words) -> FormMessage:
             section = _section_of(name, lab.robot)
             titled = structs.replace(field, section=words(section)) if section else field
             groups[_group_of(name, lab.robot)].append(titled)
-    reality = [each.name for each in groups["reality"] if each.on is not None]
-    states = {**STATES, "reality": tuple(reality)}
+    counted = [each.name for each in groups["hand"] if each.on is not None]
+    states = {**STATES, "hand": tuple(dict.fromkeys((*STATES["hand"], *counted)))}
     return FormMessage(
         place="lab",
         groups=tuple(
@@ -275,7 +275,6 @@ def _lab_form(lab: _Lab, words: Words) -> FormMessage:
                 fields=tuple(groups[name]),
                 level=level,
                 states=states.get(name, ()),
-                rest=words("form.ideal") if name == "reality" else "",
             )
             for name, level in GROUPS.items()
             if groups[name]
@@ -341,7 +340,7 @@ def _section_of(name: str, robot: str) -> str:
     known = specs(ROBOTS[robot].parameters)
     if name in known and known[name].group == "task":
         return "form.section_motion"
-    return "form.section_points" if name == "file" else ""
+    return {"file": "form.section_points", "identify": "form.section_model"}.get(name, "")
 
 
 def _fields(lab: _Lab, marks: Mapping[str, FieldValue], words: Words) -> dict[str, FormField]:

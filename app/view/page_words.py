@@ -23,7 +23,7 @@ _PLAIN = (
     *CHART,
     *("lens.closest", "lens.reference", "lens.straight"),
     *("run.hold_both", "run.hold", "run.let_both_go", "run.let_go", "run.hold_hint"),
-    *("run.run", "run.pause", "run.run_hint", "run.rate"),
+    *("run.run", "run.pause", "run.run_hint", "run.rate", "plots.time", "plots.time_hint"),
     *("run.step", "run.reset", "key.right", "key.reset"),
     *("past.go_on", "past.undo", "past.undo_hint"),
     *("transport.go_on_hint", "transport.back", "transport.back_hint"),

@@ -35,14 +35,14 @@ def test_a_law_is_chosen_while_the_robot_moves(tab: Tab) -> None:
     simulation, page = tab.simulation, tab.page
     wait_for(lambda: simulation.time > 0.5)
     run = simulation.run_number
-    tab.choose("Law, left", "Waiting clock")
+    tab.choose("Left robot", "Waiting clock")
     wait_for(lambda: simulation.laws == {**DEFAULT_LAWS, LEFT: "waiting_clock"})
     assert simulation.run_number == run and simulation.time > 0.5 and simulation.running
     told = page.locator("#op-panel [data-kind=note]")
     expect(told.get_by_text(LAWS["waiting_clock"].text)).to_be_visible()
     expect(page.get_by_role("heading", name="Waiting clock")).to_be_visible()
     expect(page.locator("#op-strip").get_by_text("Waiting clock", exact=True)).to_be_visible()
-    tab.choose("Law, right", "Waiting clock")
+    tab.choose("Right robot", "Waiting clock")
     wait_for(lambda: simulation.laws == {LEFT: "waiting_clock", RIGHT: "waiting_clock"})
     for side in ("left", "right"):
         name = f"Waiting clock, {side}"
@@ -52,7 +52,7 @@ def test_a_law_is_chosen_while_the_robot_moves(tab: Tab) -> None:
 
 
 def test_the_menu_follows_the_lab_and_lists_what_suits_the_robot(tab: Tab) -> None:
-    menu = tab.page.get_by_role("combobox", name="Law, right", exact=True)
+    menu = tab.page.get_by_role("combobox", name="Right robot", exact=True)
     chosen = menu.locator("option:checked")
     expect(chosen).to_have_text("Path following")
     tab.ask(c.ChooseLaw(RIGHT, "set_point"))
@@ -68,9 +68,9 @@ def test_the_menu_follows_the_lab_and_lists_what_suits_the_robot(tab: Tab) -> No
 
 def test_an_own_law_is_typed_and_a_typo_changes_nothing(tab: Tab) -> None:
     page, simulation = tab.page, tab.simulation
-    box = page.get_by_role("textbox", name="Own law, right", exact=True)
+    box = page.get_by_role("textbox", name="Own law of the right robot", exact=True)
     expect(box).to_have_count(0)
-    tab.choose("Law, right", "Own law…")
+    tab.choose("Right robot", "Own law…")
     expect(box).to_have_value(PATH_FOLLOWING.replace("; ", "\n"))
     assert simulation.laws == DEFAULT_LAWS  # nothing has been typed yet
     box.press("Control+A")
@@ -100,6 +100,6 @@ def test_an_own_law_is_typed_and_a_typo_changes_nothing(tab: Tab) -> None:
     names.first.wait_for()
     assert ", ".join(names.all_inner_texts()).split(", ") == [*VIEW]
     page.keyboard.press("Escape")
-    tab.choose("Law, right", "Path following")
+    tab.choose("Right robot", "Path following")
     expect(box).to_have_count(0)
     wait_for(lambda: simulation.laws == DEFAULT_LAWS)

@@ -15,10 +15,12 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
 from onpath.app.server.lab_server import LabServer
 from tests.support.browser import WAIT, Tab, wait_for
+from tests.support.built_in import built_in_course
 
 pytestmark = pytest.mark.thorough
 expect.set_options(timeout=WAIT * 1e3)
 
+COURSE, _ = built_in_course()
 LESSON, LONG = "01-path-or-timetable", "03-the-five-bar"
 LINE = 24  # [px]; the browser itself may scroll so far, to keep what is read in its place
 SCROLL = """(to) => {
@@ -33,6 +35,16 @@ SEEN = """(heading) => {
 }"""
 
 
+BELOW = """index => {
+    const words = document.querySelector(`#step-${index + 1}.open .words`)
+    const form = words?.querySelector(".form")
+    if (!words || onpathLab.forms.get("step").groups.length && !form) return null
+    const task = words.querySelector(".task > div")
+    const row = form && [...form.querySelectorAll(".field, .acts")].find(each => each.offsetHeight)
+    const { bottom } = words.getBoundingClientRect()
+    return [task, row].map(each => each ? each.getBoundingClientRect().bottom - bottom : 0)
+}"""
+"""How far the text of a step's task, and the first row of its form, are below the fold, [px]."""
 SIZES = ((1280, 800), (390, 844))
 ENLARGED = (640, 400)  # the page of a laptop at 200 %
 
@@ -134,6 +146,24 @@ def test_question_board_and_commit_are_seen_together_and_next_always(
             wait_for(lambda forward=forward: forward.evaluate(SEEN), state=lambda: f"{index}")
     assert tab.errors == []
     context.close()
+
+
+@pytest.mark.parametrize("tab", SIZES[1:], indirect=True, ids=["telephone"])
+def test_a_task_is_seen_at_once_with_what_it_sets(tab: Tab) -> None:
+    """In German, whose words are longer."""
+    tab.ask(c.SetLanguage("de"), c.SetRunning(False))
+    tab.page.wait_for_function("onpathLab.lab.language === 'de'")
+    for name, versions in COURSE.lessons.items():
+        for index, step in enumerate(versions["de"].steps):
+            if not step.tasks() or step.optional:
+                continue
+            tab.ask(TakeStep(name, index))
+            tab.page.wait_for_function("name => onpathLab.lesson.lesson === name", arg=name)
+            below = tab.page.wait_for_function(BELOW, arg=index).json_value()
+            assert max(below) <= 0, (name, index, below)
+            expect(tab.page.locator(".transport .brake > button")).to_be_in_viewport(ratio=0.99)
+    tab.ask(c.SetLanguage("en"))
+    tab.page.wait_for_function("onpathLab.lab.language === 'en'")
 
 
 def test_a_step_s_controls_are_in_its_card_and_the_robots_keep_their_room(shared: Tab) -> None:

@@ -76,7 +76,9 @@ class Pupil:
 
     def hurry(self) -> None:
         """Let time run as fast as a student can."""
-        self.tab.page.locator("#op-strip .transport select").select_option(index=5)
+        self.tab.button("Time, plots").click()
+        self.tab.page.get_by_label("Time runs at").select_option(index=5)
+        self.tab.page.keyboard.press("Escape")
         wait_for(lambda: self.tab.simulation.settings.rate == 4.0)
 
     def open(self, label: str, name: str) -> None:

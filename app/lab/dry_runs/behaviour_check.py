@@ -53,7 +53,7 @@ CONTROLS = {
 BUTTONS = (
     *("run.run", "run.pause", "run.step", "run.reset", "run.let_both_go"),
     *("gains.pulse", "design.undo", "past.go_on", "controls.help", "lesson.lessons", "laws.about"),
-    *("form.group_setup", "form.group_hand", "form.group_gains", "form.group_reality"),
+    *("form.group_setup", "form.group_hand", "form.group_gains"),
     *("form.group_view", "setup.draw"),
 )
 """Keys of other names on the page that a text may tell its reader to press or open."""

@@ -70,8 +70,6 @@ export interface FormGroup {
     level?: "deeper" | "first"
     /** names of the fields whose values make its line while it is closed. */
     states?: string[]
-    /** its line while nothing in it is on. */
-    rest?: string
 }
 
 /** All fields of a place; without groups, there is no such place now. */

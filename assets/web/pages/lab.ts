@@ -46,7 +46,7 @@ class Face {
     private readonly readings: HTMLElement[]
     private readonly stage: OverStage
     private readonly element: HTMLElement
-    private readonly undo = made("button", "")
+    private readonly undo = made("button", "undo")
     private readonly transport: Transport
     private readonly clock = made("span", "clock")
     private readonly column: Column
@@ -77,6 +77,8 @@ class Face {
         this.stage = new OverStage(engine, texts, this.overlay.element, this.sketch.element)
         Object.assign(this.undo, { type: "button", textContent: phrase(texts, "past.undo"), title: phrase(texts, "past.undo_hint") })
         this.undo.addEventListener("click", () => engine.send({ do: "UndoGoOn" }))
+        const time = made("label", "", phrase(texts, "run.rate"), this.transport.rate)
+        this.strip.menu.begin(time, phrase(texts, "plots.time"), phrase(texts, "plots.time_hint"))
         this.transport.add(this.undo, this.strip.menu.element)
         const head = made("div", "head", this.transport.element, this.clock)
         this.column = new Column(texts, engine, () => true, symbol => this.light(symbol), signal)

@@ -227,7 +227,7 @@ class GroupView {
             else if (value !== "") parts.push(row.brief(value))
         }
         if (on) parts.push(phrase(texts, "form.count_on", { count: String(on) }))
-        return parts.join(" · ") || group.rest || ""
+        return parts.join(" · ")
     }
 
     private restore(): void {

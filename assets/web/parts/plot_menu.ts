@@ -18,6 +18,7 @@ export class PlotMenu {
     /** Removes the log of an arm; hidden while there is none. */
     readonly remove: HTMLButtonElement
     private readonly last: HTMLButtonElement[]
+    private readonly before: HTMLElement[] = [] // the rows
 
     /** `choose` is called with the name of a row, and whether it is wanted; `tell` shows the curves as a table. */
     constructor(texts: Texts, private readonly choose: (name: string, on: boolean) => void, tell: () => void, log?: LogActs) {
@@ -29,11 +30,20 @@ export class PlotMenu {
         this.element = made("div", "plots", menu.button, menu.list)
     }
 
+    /** Begin with something else, of which its name tells. */
+    begin(first: HTMLElement, name: string, hint: string): void {
+        const { button, list } = this.menu
+        Object.assign(button, { textContent: name, title: hint })
+        list.ariaLabel = name
+        list.prepend(first)
+        this.before.push(first)
+    }
+
     /** Show the rows that there can be. */
     show(rows: readonly { name: string; menu: string; on: boolean }[]): void {
         const { list } = this.menu
         const focused = list.contains(document.activeElement) ? (document.activeElement as HTMLInputElement).value : null
-        list.replaceChildren(...rows.map(({ name, menu, on }) => {
+        list.replaceChildren(...this.before, ...rows.map(({ name, menu, on }) => {
             const box = made("input", "")
             Object.assign(box, { type: "checkbox", checked: on, value: name })
             box.addEventListener("change", () => this.choose(name, box.checked))

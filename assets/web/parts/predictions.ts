@@ -80,13 +80,15 @@ export function predict(page: PageData, prediction: Prediction, student: Student
         const seconds = significant(page, data.seconds, 4)
         chart.sheet.canvas.setAttribute("aria-label", phrase(page, "site.sketch", { quantity: data.label, unit: data.unit, seconds }))
         chart.ghost = curveOf(answerKept())
+        const ask = () => told.replaceChildren(phrase(page, "site.draw_first"), made("span", "by-keys", ` ${phrase(page, "site.draw_keys")}`))
         const hint = () => (chart.hint = chart.ghost ? "" : phrase(page, "chart.draw"))
         hint()
         const drawing = new Drawing(chart, () => {
             const { times, values } = chart.ghost ?? {}
             answer = times && values ? { times: [...times], values: [...values] } : {}
             answers()
-            told.textContent = phrase(page, times ? "lesson.drawn" : "site.draw_first")
+            if (times) told.textContent = phrase(page, "lesson.drawn")
+            else ask()
             hint()
             chart.draw()
             keep()
@@ -98,7 +100,7 @@ export function predict(page: PageData, prediction: Prediction, student: Student
             answer = { times: draft.times!, values: draft.values! }
         }
         board = chart.element
-        told.textContent = phrase(page, "site.draw_first")
+        ask()
         committed = kept => {
             drawing.open = false
             chart.ghost = curveOf(kept)

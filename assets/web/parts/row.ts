@@ -47,7 +47,7 @@ export class Row {
             const both = own.name ? `${name} ${own.name}` : name
             return { name: both, tone: `side${side}`, dashed: side === 1, thin: i % lines.length > 0, times, values }
         }).filter(line => !Number.isNaN(line.values[line.values.length - 1]))
-        chart.lines = [...robotLines, ...this.log().filter(({ times }) => times[times.length - 1]! > chart.from)]
+        chart.lines = [...robotLines, ...this.log().filter(line => line.times[line.times.length - 1]! > chart.from)]
         const [low, high] = this.extent(robotLines)
         const range = axisFor(chart.axes, low, high, this.least(low, high))
         chart.axes = { ...chart.axes, ...range }

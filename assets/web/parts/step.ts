@@ -140,12 +140,12 @@ export class StepView {
     /** Shrink formulas that are wider than the column while they can be read; others, and those in a text, are scrolled, also
      * by keys. */
     formulas(): void {
-        for (const formula of this.places.section.querySelectorAll<MathMLElement>("math[display=block]")) {
-            formula.style.fontSize = ""
-            const share = formula.clientWidth / formula.scrollWidth
-            if (share < 1) formula.style.fontSize = `${Math.max(0.98 * share, SMALLEST)}em`
-            formula.tabIndex = formula.scrollWidth > formula.clientWidth ? 0 : -1
-        }
+        const formulas = [...this.places.section.querySelectorAll<MathMLElement>("math[display=block]")]
+        for (const { style } of formulas) style.fontSize = ""
+        const shares = formulas.map(each => each.clientWidth / each.scrollWidth) // one layout for all
+        formulas.forEach(({ style }, i) => { if (shares[i]! < 1) style.fontSize = `${Math.max(0.98 * shares[i]!, SMALLEST)}em` })
+        const scrolled = formulas.map(each => each.scrollWidth > each.clientWidth)
+        formulas.forEach((each, i) => (each.tabIndex = scrolled[i] ? 0 : -1))
         const within = [...this.places.section.querySelectorAll<HTMLElement>(".math.inline:not(td *)")]
         for (const formula of within) formula.classList.remove("long")
         const isLong = within.map(formula => formula.offsetWidth > formula.closest("p, li, div")!.clientWidth)

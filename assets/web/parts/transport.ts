@@ -11,10 +11,11 @@ export class Transport {
     readonly element: HTMLElement
     /** The brake; while one looks at the past, the buttons of the past stand in its place. */
     readonly brake: HTMLElement
+    /** How fast time runs; may be put elsewhere. */
+    readonly rate: HTMLSelectElement
     private readonly step: HTMLButtonElement // there while time stands still, so it is the last one
     private readonly held: HTMLButtonElement
     private readonly run: HTMLButtonElement
-    private readonly rate: HTMLSelectElement
     private readonly past: HTMLElement
     private readonly goes: HTMLButtonElement
     private readonly hints = new Map<HTMLElement, string>()
@@ -32,10 +33,10 @@ export class Transport {
         this.brakes(this.held)
         this.run = this.button("", ["run.run", "run.pause"], "run.run_hint", () => this.toggleRun())
         this.rate = this.rates()
-        this.step = this.button("", ["run.step"], "key.right", () => this.engine.act({ do: "step" }))
+        this.step = this.button("advance", ["run.step"], "key.right", () => this.engine.act({ do: "step" }))
         const every: Record<string, HTMLElement[]> = {
             run: [this.run],
-            reset: [this.button("", ["run.reset"], "key.reset", () => this.engine.act({ do: "reset" }))],
+            reset: [this.button("reset", ["run.reset"], "key.reset", () => this.engine.act({ do: "reset" }))],
         }
         const buttons = Object.keys(every).filter(name => offered.includes(name)).flatMap(name => every[name]!)
         if (offered.includes("run")) buttons.push(this.rate)

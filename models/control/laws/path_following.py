@@ -177,15 +177,14 @@ def tangential(view: View) -> ca.SX:
 LAW = Law(
     name="path_following",
     label="Path following",
-    text="Stays on the curve and regulates the speed along it; it has no clock, and with K5 = 0 it"
-    " is a guiding virtual fixture: a hand alone moves the robot along.",
+    text="Stays on the curve and regulates the speed along it; it has no clock.",
     source="Hladio, Nielsen and Wang, eqs. (16)-(19)",
     command=path_following,
     aim="theta",
     gains=("K1", "K2", "K3", "K4", "K5"),
     linear=True,
     good="Held back and let go, it stays on the curve and goes on at the wanted speed without"
-    " haste.",
+    " haste. With K5 = 0 it is a guiding virtual fixture: a hand alone moves the robot along.",
     limits="Time that is lost stays lost: after the brake it is late by as long as it was held.",
     objection="Its authors bound neither the integral nor the distance from which (16)"
     " leads back, as is done here.",

@@ -609,3 +609,23 @@ def test_no_message_is_defined_twice(language: str) -> None:
     text = asset_path(f"words/{language}.ftl").read_text(encoding="utf-8")
     keys = re.findall(r"^([a-z][\w-]*) =", text, re.MULTILINE)
     assert [key for key, count in Counter(keys).items() if count > 1] == []
+
+
+NAMED_KEY = re.compile(
+    r"\b(?:keys?|Tasten?|Ctrl|Strg|press|drücke) [A-Z]\b(?! ?\()|\bTab\b|\barrow keys|Pfeiltasten",
+    re.IGNORECASE,
+)
+ABOUT_KEYS = ("site.draw_keys", "help.own_keys")
+"""What a touch screen hides, and the list of keys."""
+
+
+@pytest.mark.parametrize("language", COMPLETE)
+def test_no_text_of_a_page_names_a_key(language: str) -> None:
+    """Whoever touches the page has none; a title, which only a mouse shows, may name one."""
+    texts = json.loads(words_message(language))["words"]
+    said = {key: text for key, text in texts.items() if not key.endswith(("_hint", *ABOUT_KEYS))}
+    files = (ROOT / "lessons" / "course").glob(f"*/{language}.md")
+    said |= {str(file): file.read_text("utf-8") for file in files}
+    assert {
+        key: NAMED_KEY.findall(text) for key, text in said.items() if NAMED_KEY.search(text)
+    } == {}

@@ -23,7 +23,7 @@ const LAW: FormField = { name: "law", kind: "text", label: "Law" }
 const FORM: FormMessage = {
     is: "form", place: "lab", groups: [
         { name: "first", title: "First", fields: [SPEED, TURNED, LARGE, LAW] },
-        { name: "more", title: "More", level: "deeper", fields: [K1, LIMIT, CUT], states: ["K1", "limit", "cut"], rest: "ideal" },
+        { name: "more", title: "More", level: "deeper", fields: [K1, LIMIT, CUT], states: ["K1", "limit", "cut"] },
     ],
 }
 const BEGIN: Record<string, Value> = { K1: 400, speed: 3, limit: 0, cut: "slow", turned: 0, large: false, law: "" }
@@ -257,7 +257,7 @@ test("no text becomes an element", () => {
     const kinds = ["number", "choice", "switch", "button", "text", "note"] as const
     const data: FormMessage = {
         is: "form", place: "lab", groups: [
-            { name: "a", title: evil, level: "deeper", rest: evil, states: ["choice"], fields: [...kinds.map(kind => field(kind, kind)), field("choice", "drawn")] },
+            { name: "a", title: evil, level: "deeper", states: ["choice"], fields: [...kinds.map(kind => field(kind, kind)), field("choice", "drawn")] },
         ],
     }
     const { form, values } = opened(data, { number: evil, text: evil })
