@@ -239,9 +239,10 @@ def _second_tries(lesson: Lesson, index: int, notes: Notes) -> Iterator[Row]:
     step = lesson.steps[index]
     for at, asked in enumerate(step.blocks):
         item = second_item(index, at)
-        block = second_at(lesson.steps, item)
+        if (block := second_at(lesson.steps, item)) is None:
+            continue
         uncounted = isinstance(asked, Quiz) and asked.warm_up
-        for given in given_to(notes, item) if block is not None else ():
+        for given in given_to(notes, item):
             row = _answered(block, given)
             row = {name: cell for name, cell in row.items() if name != "right" or not uncounted}
             place = {"step": index + 1, "item": step.title, "kind": "second try"}

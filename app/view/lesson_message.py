@@ -189,13 +189,13 @@ def _asked(lesson: Lesson, index: int, run: LessonView) -> StepPart:
     judged = happened and answer is not None and not run.is_voting
     second = None if part.second is None or not judged else _tried(lesson, part.second, run)
     told = judged and (second is None or second.told)
-    missed = judged and not told and answer is not None and answer.option is not None
+    option = None if answer is None or told or not judged else answer.option
     return replace(
         part,
         order=run.order(block) if isinstance(block, Choice) else (),
         lettered=True,
         told=told,
-        replies=(answer.option,) if missed else (),
+        replies=() if option is None else (option,),
         second=second,
         remark=_remark(block, run),
         aside=aside if aside.strip() else None,

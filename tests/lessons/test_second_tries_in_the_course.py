@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -37,7 +38,7 @@ NUMBERS = {
     "08-challenge": [0.66 / 2**2, math.sqrt(0.5 / 2)],
 }
 """Of each lesson, the answers to the second tries that ask for a number, in their units."""
-EXACT = {"K3": 0.0}
+EXACT: dict[str, Any] = {"K3": 0.0}
 
 
 def asked(name: str, language: str = "en") -> list[Choice | Quiz]:
@@ -58,7 +59,7 @@ def test_every_question_has_a_second_try_with_its_own_number(name: str) -> None:
 
 
 def test_those_about_the_lab_are_what_it_does() -> None:
-    light = {"error_M11": -40.0, "error_M22": -40.0, "K1": 1600.0, "K2": 80.0}
+    light: dict[str, Any] = {"error_M11": -40.0, "error_M22": -40.0, "K1": 1600.0, "K2": 80.0}
     lap = onpath.simulate(duration=4.0, **light, **EXACT)
     outside = 1e3 * lap.distance[-1000:].mean()
     assert outside == pytest.approx(answer("06-exact-cancellation", 0), abs=0.05)
