@@ -39,7 +39,7 @@ from onpath.models.systems.system import MechanicalSystem
 
 INDEPENDENT = 2.5  # windows that tell as much of white noise as one without overlap
 FEWEST_FREE = 3.0  # degrees of freedom, with fewer of which there is no interval
-HARDLY = 1e-3  # rms of a column without slow friction, relative to before, that counts as zero
+HARDLY = 0.1  # share of a column that friction of slow motors leaves, below which it counts as zero
 UNMOVED = 1e-9  # rms of a column, relative to the largest, below which it counts as zero
 DELAY = "delay"  # name of the delay among the estimates
 NEGLIGIBLE = 1e-3  # smaller shares of a parameter in a combination are left out
