@@ -179,7 +179,7 @@ export class Shell {
             this.leaves = message.is === "leave" || message.is === "forget_me"
             engine.send(message)
         }
-        const seat = (this.seat = new ClassSheet(texts, name === "teach", send, () => (this.seat = null)))
+        const seat = (this.seat = new ClassSheet(texts, name === "teach", { send, closed: () => (this.seat = null), teach: () => void this.open("teach") }))
         return seat.open(engine.seat!, isGone)
     }
 

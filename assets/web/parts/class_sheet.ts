@@ -12,6 +12,14 @@ const DRAFT = "nickname"
 const LONGEST = 200 // characters of a code or a name, as `Typed` of app/channel/sheet_messages.py
 const PLAIN = { type: "text", autocomplete: "off", autocapitalize: "off", spellcheck: false, maxLength: LONGEST } as const
 
+export interface SeatHost {
+    send(message: PageMessage): void
+    /** The card has been closed. */
+    closed(): void
+    /** Open what asks for the teacher's key. */
+    teach(): void
+}
+
 export class ClassSheet {
     private readonly sheet: SheetDialog
     private readonly refusal = made("p", "refusal")
@@ -20,9 +28,8 @@ export class ClassSheet {
     private shown = ""
 
     /** `teaches`: whether it is for the teacher's key. */
-    constructor(private readonly texts: Texts, private readonly teaches: boolean,
-        private readonly send: (message: PageMessage) => void, closed: () => void) {
-        this.sheet = new SheetDialog(texts, teaches ? "teach" : "class", "", closed)
+    constructor(private readonly texts: Texts, private readonly teaches: boolean, private readonly host: SeatHost) {
+        this.sheet = new SheetDialog(texts, teaches ? "teach" : "class", "", () => host.closed())
         this.refusal.role = "alert"
         this.refusal.id = "op-seat-refusal"
     }
@@ -72,17 +79,20 @@ export class ClassSheet {
 
     private joining(seat: ClassMessage): HTMLElement[] {
         const { code, longest } = seat
-        if (!code) return [this.asks("class.code", "class.code_hint", "class.join", typed => { this.send({ is: "join", code: typed, name: "" }) })]
+        if (!code) return [this.asks("class.code", "class.code_hint", "class.join", typed => { this.host.send({ is: "join", code: typed, name: "" }) }), this.teacher()]
         const form = this.asks("class.nickname", "class.nickname_hint", "class.join", typed => {
             if (lengthOf(typed) > longest) return phrase(this.texts, "class.too_long", { most: String(longest) })
-            this.send({ is: "join", code: "", name: typed })
+            this.host.send({ is: "join", code: "", name: typed })
             return ""
         })
         const draft = draftOf<{ typed: string }>(DRAFT)
         if (typeof draft?.typed === "string") this.field!.value = draft.typed
         this.field!.addEventListener("input", () => keepDraft(DRAFT, this.field && { typed: this.field.value }))
-        return [form, this.stored(seat)]
+        return [form, this.stored(seat), this.teacher()]
     }
+
+    /** Who has come to teach is not asked for a nickname. */
+    private teacher(): HTMLElement { return made("p", "row", pressed("", phrase(this.texts, "class.teacher"), () => this.host.teach())) }
 
     private member(seat: ClassMessage): HTMLElement[] {
         const { texts } = this
@@ -92,10 +102,10 @@ export class ClassSheet {
         const [before = "", after = ""] = phrase(texts, "class.member").split("{name}")
         const leave = (this.acts = pressed("", phrase(texts, "class.leave"), () => {
             leave.disabled = true
-            this.send({ is: "leave" })
+            this.host.send({ is: "leave" })
         }))
         const forget = pressed("warning", phrase(texts, "class.forget_me"), () => {
-            confirm(texts, phrase(texts, "class.forget_me"), phrase(texts, "class.forget_me_sure"), () => { this.send({ is: "forget_me" }) })
+            confirm(texts, phrase(texts, "class.forget_me"), phrase(texts, "class.forget_me_sure"), () => { this.host.send({ is: "forget_me" }) })
         })
         return [made("p", "", before, made("b", "", made("bdi", "", seat.name)), after), made("p", "", phrase(texts, "class.then")), ...former, ...own, this.stored(seat), leave, forget, this.refusal]
     }
@@ -124,7 +134,7 @@ export class ClassSheet {
             this.acts = button
             this.field = field
             button.disabled = true
-            this.send(message(field.value.trim()))
+            this.host.send(message(field.value.trim()))
         })
         return form
     }
@@ -135,13 +145,13 @@ export class ClassSheet {
         const says = made("p", "former", phrase(texts, asked ? "class.place_asked" : "class.is_it_you", { name: away }))
         const ask = pressed("", phrase(texts, "class.ask_place"), () => {
             ask.disabled = true
-            this.send({ is: "ask_place" })
+            this.host.send({ is: "ask_place" })
         })
         return asked ? [says] : [says, ask]
     }
 
     private key(): HTMLElement[] {
-        const form = this.asks("class.key", "class.key_hint", "class.teach", key => { this.send({ is: "teach", key }) })
+        const form = this.asks("class.key", "class.key_hint", "class.teach", key => { this.host.send({ is: "teach", key }) })
         this.field!.type = "password"
         return [form]
     }

@@ -12,8 +12,8 @@ const ELSEWHERE: ClassMessage = { ...NONE, is: "class", place: "elsewhere" }
 function opened(seat: ClassMessage, teaches = false, isGone = false) {
     for (const each of document.querySelectorAll("dialog")) each.remove()
     const sent: PageMessage[] = []
-    let closed = 0
-    const card = new ClassSheet(TEXTS, teaches, message => sent.push(message), () => closed++)
+    let closed = 0, asked = 0
+    const card = new ClassSheet(TEXTS, teaches, { send: message => sent.push(message), closed: () => closed++, teach: () => asked++ })
     const { body, element } = card.open(seat, isGone)
     const field = () => body.querySelector<HTMLInputElement>("form input")!
     const submit = (typed: string) => {
@@ -22,7 +22,7 @@ function opened(seat: ClassMessage, teaches = false, isGone = false) {
         body.querySelector("form")!.dispatchEvent(new Event("submit", { cancelable: true }))
     }
     const refusal = () => body.querySelector("[role=alert]")!.textContent
-    return { card, body, element, field, submit, refusal, sent, isClosed: () => closed > 0 }
+    return { card, body, element, field, submit, refusal, sent, isClosed: () => closed > 0, isAsked: () => asked > 0 }
 }
 
 test("a nickname is asked for with its bound, what is stored can be opened, and one request is sent at a time", () => {
@@ -133,4 +133,15 @@ test("a member is asked only for what the teacher asks for, and a word may be gi
     card.show({ ...MEMBER, linked: "shared" })
     assert.match(body.querySelector<HTMLDetailsElement>("details.word")!.textContent, /class\.word_shared/)
     assert.equal(body.querySelector<HTMLDetailsElement>("details.word")!.open, true)
+})
+
+test("who has come to teach finds the key's card where a nickname or a code is asked for, and nowhere else", () => {
+    const button = (body: HTMLElement) => [...body.querySelectorAll("button")].find(each => each.textContent === "class.teacher")
+    for (const seat of [GUEST, ELSEWHERE]) {
+        const { body, isAsked } = opened(seat)
+        button(body)!.click()
+        assert.ok(isAsked())
+    }
+    assert.equal(button(opened(MEMBER).body), undefined)
+    assert.equal(button(opened(GUEST, true).body), undefined)
 })
