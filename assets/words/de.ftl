@@ -285,7 +285,7 @@ test-students = { $count ->
        *[other] { $count } Personen haben beide Tests abgegeben.
     }
 test-means = Richtige Antworten: vorher { $before }, nachher { $after }.
-test-share = { $value } % ({ $low } bis { $high })
+test-share = { $value } % ({ $low }–{ $high })
 test-interval = { $value } ({ $low } bis { $high })
 test-fewest = Was sie dazugelernt hat, steht hier ab { $count } Personen: Bei weniger entscheidet der Zufall.
 test-gain = Normierter Lernzuwachs: { $gain }

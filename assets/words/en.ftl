@@ -287,7 +287,7 @@ test-students = { $count ->
        *[other] { $count } students have handed in both tests.
     }
 test-means = Right answers: { $before } before, { $after } after.
-test-share = { $value } % ({ $low } to { $high })
+test-share = { $value } % ({ $low }–{ $high })
 test-interval = { $value } ({ $low } to { $high })
 test-fewest = What it has gained is shown from { $count } students on: with fewer, chance decides.
 test-gain = Normalised gain: { $gain }
