@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import tyro
 
 from tests.bench.crowd import ClientLoad
+from tests.bench.lecture import bench_class
 from tests.bench.tables import bench, bench_crowds, bench_soak
 
 INTERRUPTED = 130
@@ -29,6 +30,12 @@ class Bench:
     soak: int = 0
     """Attack a server for so many minutes while 40 simulated browsers (--clients) use labs."""
 
+    students: int = 0
+    """Measure a class of so many scripted students: votes, a push, reloading, kill
+    -9, a tenth of the machine, a cable that is pulled."""
+    row: str = ""
+    """With --students: only the rows whose names begin so, such as "kill"."""
+
     def run(self) -> int:
         """Print the tables; return exit code 1 if a bound of the soak is broken.
 
@@ -39,6 +46,9 @@ class Bench:
             if self.soak < 0 or len(self.clients) > 1 or self.quick or self.minutes:
                 raise ValueError("--soak: expected minutes, and only --clients with one number")
             return bench_soak(self.clients[0] if self.clients else SOAKED, self.soak)
+        if self.students:
+            bench_class(self.students, self.row)
+            return 0
         if self.minutes < 0:
             raise ValueError(f"--minutes {self.minutes}: expected 1 or more")
         if not self.clients and (self.seconds, self.minutes) != (15.0, 0):
