@@ -50,6 +50,7 @@ class ControllerPlan:
         laws: the first acts first.
         at_fault, fastest, settings: see there.
         silence: of the plant, in control intervals, after which it ends.
+        asked: time without a request, after which the process that asks counts as lost, [s].
     """
 
     robot: RobotEntry
@@ -59,6 +60,7 @@ class ControllerPlan:
     fastest: float
     settings: Mapping[str, Any] = field(default_factory=dict[str, Any])
     silence: int = SILENCE
+    asked: float = ASKED
 
     def made(self) -> dict[str, Controller]:
         """The controllers by law."""
@@ -182,11 +184,12 @@ def serve(connection: Connection, plan: ControllerPlan, address: Address) -> Non
         with socket.socket(_family(address), socket.SOCK_DGRAM) as plant:
             plant.bind(address)
             plant.setblocking(False)
-            connection.send(plant.getsockname()[:2])
             gc.collect()
             gc.disable()  # a collection would take longer than a control interval
             _come_first()
-            _Serving(connection, PlantLink(controllers, plan.silence), plant).run()
+            connection.send(plant.getsockname()[:2])
+            link = PlantLink(controllers, plan.silence)
+            _Serving(connection, link, plant, plan.asked).run()
     except (ValueError, OSError) as error:
         connection.send(error)
 
@@ -194,8 +197,11 @@ def serve(connection: Connection, plan: ControllerPlan, address: Address) -> Non
 class _Serving:
     """The loop of the process."""
 
-    def __init__(self, connection: Connection, link: PlantLink, plant: socket.socket) -> None:
+    def __init__(
+        self, connection: Connection, link: PlantLink, plant: socket.socket, most: float
+    ) -> None:
         self._connection, self._link, self._plant = connection, link, plant
+        self._most = most  # [s] without a request
         self._asked = time.monotonic()
         self._until: float | None = None  # when it ends because nobody is there to end it
 
@@ -238,7 +244,7 @@ class _Serving:
         now, silent = time.monotonic(), self._link.silent_at
         if silent is not None and now >= silent and not wait([self._plant], 0):
             self._send(self._link.fall_silent())
-        if now - self._asked > ASKED:
+        if now - self._asked > self._most:
             self._stop()
 
     def _request(self) -> bool:

@@ -15,7 +15,12 @@ from typing_extensions import override
 from onpath.app.lab.closed_loop_run import MeasuredRobot
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.plant_state import SIDE, PlantState
-from onpath.app.plant.controller_process import Address, ControllerPlan, ControllerProcess
+from onpath.app.plant.controller_process import (
+    ASKED,
+    Address,
+    ControllerPlan,
+    ControllerProcess,
+)
 from onpath.app.plant.plant_link import SILENCE, PlantReport
 from onpath.app.simulation.scheduled_lab import LabDisplay
 from onpath.models.control.settable import specs, value_of, values_of
@@ -39,7 +44,7 @@ class PlantChoice:
         address: where its controller listens, once it has been started.
         laws: that can act on it; the first acts first.
         at_fault, fastest: see `onpath.controller`.
-        silence: see `ControllerPlan`.
+        silence, asked: see `ControllerPlan`.
     """
 
     address: Address
@@ -47,6 +52,7 @@ class PlantChoice:
     at_fault: str = "zero"
     fastest: float
     silence: int = SILENCE
+    asked: float = ASKED
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -177,6 +183,7 @@ class LabPlant(LabDisplay):
             fastest=choice.fastest,
             settings=values_of(parameters),
             silence=choice.silence,
+            asked=choice.asked,
         )
         self._told = now
         self._coming = self._starts.submit(self._make, plan, choice.address)

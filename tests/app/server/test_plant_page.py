@@ -22,7 +22,7 @@ def server(monkeypatch: pytest.MonkeyPatch) -> Iterator[LabServer]:
     monkeypatch.setattr(controller_process, "START", "forkserver")
     multiprocessing.set_forkserver_preload([controller_process.__name__])
     monkeypatch.setattr(lab_plant, "LOST", 60.0)  # these pages send no signs of life
-    plant = PlantChoice(address=("127.0.0.1", 0), fastest=50.0, silence=1000)
+    plant = PlantChoice(address=("127.0.0.1", 0), fastest=50.0, silence=1000, asked=20.0)
     given = {"torque_limit": "5", "control_rate": "50"}
     options = ServerOptions(robot=ROBOTS["two_link_arm"], settings=given, plant=plant)
     server = LabServer("127.0.0.1", 0, LoopCache(), options)
