@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import multiprocessing
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
 
@@ -32,8 +33,13 @@ def server(monkeypatch: pytest.MonkeyPatch) -> Iterator[LabServer]:
 
 def phase(page: Student, wanted: str) -> str:
     """What the page is told of the plant, once it is in a phase."""
-    page.read(lambda: (page.told.get("state", {}).get("plant") or {}).get("phase") == wanted)
-    return page.state["plant"]["text"]
+
+    def told() -> dict[str, Any]:
+        return page.told.get("state", {}).get("plant") or {"phase": ""}
+
+    page.read(lambda: told()["phase"] in (wanted, "ended"))
+    assert told()["phase"] == wanted, told()["text"]
+    return told()["text"]
 
 
 def test_a_page_that_watches_cannot_drive(server: LabServer) -> None:
