@@ -56,7 +56,7 @@ def experiment_figure(experiment: Experiment, runs: list[Trajectory]) -> Figure:
     figure = ShownFigure(figsize=(13, 2.1 * len(panels)), layout="constrained")
     axes = figure.subplot_mosaic([["space", name] for name, _, _ in panels], width_ratios=(1, 1.25))
     figure.suptitle(without_math(experiment.title), fontsize=15)
-    _draw_space(axes["space"], experiment, runs)
+    _draw_space(figure, axes["space"], experiment, runs)
     for name, label, column in panels:
         for run in runs:
             draw_column(axes[name], run, _colour(run), *column(run))
@@ -155,7 +155,7 @@ def _shade_held(axes: Axes, runs: list[Trajectory]) -> None:
         axes.axvspan(times[0], times[-1], color="0.5", alpha=0.15, linewidth=0)
 
 
-def _draw_space(axes: Axes, experiment: Experiment, runs: list[Trajectory]) -> None:
+def _draw_space(figure: Figure, axes: Axes, experiment: Experiment, runs: list[Trajectory]) -> None:
     frame = experiment.robot().frame
     curve = experiment.curve()
     for number, stroke in enumerate(curve.plan.strokes()):
@@ -185,9 +185,7 @@ def _draw_space(axes: Axes, experiment: Experiment, runs: list[Trajectory]) -> N
     axes.set_xlabel(f"$y_{first}$  [mm]")
     axes.set_ylabel(f"$y_{second}$  [mm]")
     axes.grid(alpha=0.25)
-    below = axes.transAxes + ScaledTranslation(
-        0.0, -0.5, axes.get_figure(root=True).dpi_scale_trans
-    )
+    below = axes.transAxes + ScaledTranslation(0.0, -0.5, figure.dpi_scale_trans)
     style = {"loc": "upper center", "ncols": 2, "frameon": False}
     axes.legend(bbox_to_anchor=(0.5, 0.0), bbox_transform=below, **style)
 

@@ -258,7 +258,7 @@ def bent_beam(of: Symbols) -> list[ca.SX]:
     waist = of["J"] * faster[0] + coupling * faster[1] - torque
     shape = faster[1] + coupling * faster[0] + of["omega"] / of["rho"]
     rows = ca.vertcat(waist, shape)
-    found = ca.solve(ca.jacobian(rows, faster), -ca.substitute(rows, faster, ca.DM([0, 0])))
+    found = ca.solve(ca.jacobian(rows, faster), -ca.substitute(rows, faster, ca.SX.zeros(2)))
     inertia = 1 / ca.jacobian(found[0], torque)
     bending = -ca.substitute(shape, faster, ca.vertcat(of["a"], 0))
     pull = ca.substitute(found[0], torque, 0) * inertia
@@ -271,7 +271,7 @@ def bent_side(of: Symbols) -> list[ca.SX]:
     turn, shape, waist = ca.SX.sym("q3"), ca.SX.sym("f"), 1 / of["M"]
     side = of["R"] * ca.sin(turn) + of["phi"] * shape * ca.cos(turn)
     joints = ca.vertcat(turn, shape)
-    slopes = ca.substitute(ca.jacobian(side, joints), joints, ca.DM([0, 0]))
+    slopes = ca.substitute(ca.jacobian(side, joints), joints, ca.SX.zeros(2))
     answer = slopes @ ca.vertcat(waist, -of["rho"] * of["psi"] * waist)
     slope = ca.jacobian(answer, of["R"])  # it is linear in the radius
     return [answer, of["R"] - answer / slope]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
@@ -42,12 +42,14 @@ class Slow(Records):
         self.goes_on, self.away, self.saved = threading.Event(), 0, threading.Event()
 
     @override
-    def save(self, code: str, state: dict[str, Any], table: Any = labs) -> None:
+    def save(
+        self, code: str, state: dict[str, Any], table: Any = labs, gone: Iterable[str] = ()
+    ) -> None:
         self.goes_on.wait(30.0)
         if self.away:
             self.away -= 1
             raise NotKept("error.database", reason="away")
-        super().save(code, state, table)
+        super().save(code, state, table, gone)
 
 
 @pytest.fixture(params=["sqlite", pytest.param("postgres", marks=needs_postgres)])
