@@ -149,7 +149,7 @@ def test_of_the_glide() -> None:
         assert places[50, 1] > 0.001 and abs(places[-1, 1]) < 1e-3
 
 
-def test_of_the_hook() -> None:
+def test_of_the_trolley() -> None:
     """Half the speed"""
     places, velocities = moved(kept(lambda t: SPEED if t < 10 else SPEED / 2), *_begun(), 40)
     assert np.abs(off_circle(places)).max() < 0.05

@@ -85,13 +85,11 @@ def test_of_the_pull() -> None:
 
 def test_of_the_clock() -> None:
     """A clock that waits"""
-    assert farthest(run(WAITING, hold=HELD), *HELD) < 2
+    assert farthest(run(WAITING, hold=HELD)) < min(2, farthest(run(hold=HELD)))
     turned = {law: farthest(run(law, 6.0, reverse_at=3.0), 2.5) for law in (WAITING, FOLLOWER)}
     assert turned[WAITING] > 3 and turned[FOLLOWER] < 0.005
     held, free = run(WAITING, hold=HELD), run(WAITING)
     assert free.theta[-1] - held.theta[-1] > 0.9 * 2 * SPEED  # it does not make up for the time
-    stiff = farthest(run(WAITING, 6.0, reverse_at=3.0, K1=2500.0, K2=100.0), 2.5)
-    assert 0.1 < stiff < turned[WAITING]
 
 
 def test_of_the_velocity_across() -> None:
