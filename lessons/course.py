@@ -115,8 +115,9 @@ class Course:
         return numbers
 
     def languages(self) -> list[str]:
-        """The languages of all lessons, sorted."""
-        return sorted({language for versions in self.lessons.values() for language in versions})
+        """The languages of all lessons and tests, sorted."""
+        every = (self.lessons | self.tests).values()
+        return sorted({language for versions in every for language in versions})
 
 
 NO_LESSONS = Course({})
@@ -157,7 +158,8 @@ def read_course(
                 problems.append(Problem(str(home), 1, f"a second lesson {home.name!r}"))
             elif versions:
                 lessons[home.name], homes[home.name] = versions, home
-        tests = both_sittings([forms[name] for name in FOLDERS if forms.get(name)]) or tests
+        read_forms = [forms[name] for name in FOLDERS if forms.get(name)]
+        tests = both_sittings(dict(enumerate(read_forms))) or tests
         problems += [*_form_faults(folder, forms), *_folder_faults(folder, found)]
         read = read_routes(folder, lessons)
         routes, problems = {**read.routes, **routes}, problems + read.problems
@@ -236,12 +238,16 @@ def _folder_faults(folder: Path, lessons: Sequence[Path]) -> Iterator[Problem]:
 
 
 def read_folder(folder: Path) -> tuple[Course, list[Problem], Path]:
-    """The lessons in a folder, or the lesson whose folder it is; their problems; their folder."""
+    """The lessons in a folder, or the lesson or form of the concept test whose folder it is; their
+    problems; their folder."""
     if not _is_lesson(folder):
         return *read_course([folder]), folder
     home = folder.resolve()
     versions, problems = read_versions(home)
-    return Course({home.name: versions} if versions else {}), sorted(problems), home.parent
+    course = Course({home.name: versions} if versions else {})
+    if versions and home.name in FOLDERS:
+        course = Course({}, tests=both_sittings({FOLDERS.index(home.name): versions}))
+    return course, sorted(problems), home.parent
 
 
 def _is_lesson(folder: Path) -> bool:

@@ -102,15 +102,15 @@ def lacks_of_test(steps: Sequence[Step]) -> Iterator[str]:
             yield f"{where}: a test has no optional steps and no scripts"
 
 
-def both_sittings(forms: Sequence[Mapping[str, Lesson]]) -> dict[str, Mapping[str, Lesson]]:
+def both_sittings(forms: Mapping[int, Mapping[str, Lesson]]) -> dict[str, Mapping[str, Lesson]]:
     """Name of each test -> language -> lesson.
 
     Args:
-        forms: of each form, language -> lesson.
+        forms: index of each form -> language -> lesson.
     """
     return {
         name: {language: replace(lesson, name=name) for language, lesson in versions.items()}
-        for form, versions in enumerate(forms)
+        for form, versions in forms.items()
         for name in (name_of(sitting, form) for sitting in SITTINGS)
     }
 

@@ -26,10 +26,11 @@ from onpath.lessons.concept_test.concept_test import (
     right_in,
     sitting_of,
 )
-from onpath.lessons.course import BUILT_IN, Course, read_course
+from onpath.lessons.course import BUILT_IN, Course, read_course, read_folder
 from onpath.lessons.parse import read_lesson
 from onpath.lessons.problems import LessonError
 from onpath.lessons.progress import Notes, Progress
+from onpath.lessons.strategies import rates
 from tests.support.built_in import built_in_course
 from tests.support.given import notes_with
 
@@ -127,12 +128,22 @@ def test_a_second_form_has_as_many_questions_about_the_same_beliefs(tmp_path: Pa
     assert "no first form" in problem.text
 
 
+@pytest.mark.parametrize("form", (0, 1))
+def test_a_form_is_checked_alone_as_well(form: int) -> None:
+    course, problems, folder = read_folder(BUILT_IN / FOLDERS[form])
+    assert not problems and folder == BUILT_IN and not course.lessons
+    assert list(course.tests) == [name_of(sitting, form) for sitting in SITTINGS]
+    ours = {each.group.partition(" ")[0] for each in rates(course) if each.count}
+    assert ours == set(course.languages()) == set(COURSE.languages())
+    assert course.forms("en")[0].steps == COURSE.forms("en")[form].steps
+
+
 @pytest.mark.thorough
 def test_a_course_may_have_a_test_of_its_own_or_none(tmp_path: Path) -> None:
     course, problems = read_course([BUILT_IN, written(tmp_path, ITEM)])
     assert not problems and list(course.tests) == list(SITTINGS)
     assert len(questions(course.lesson(AFTER, "en"))) == 1
-    assert both_sittings([]) == {} and not Course({}).has(BEFORE) and Course({}).forms("en") == []
+    assert both_sittings({}) == {} and not Course({}).has(BEFORE) and Course({}).forms("en") == []
 
 
 # Which form.

@@ -27,7 +27,7 @@ from onpath.app.classroom.teaching.lesson_labels import step_label
 from onpath.app.classroom.teaching.steps_for_all import StepsForAll
 from onpath.app.classroom.teaching.teacher_context import TeacherChoices
 from onpath.app.lab.dry_runs.step_truth import computed_truth
-from onpath.lessons.concept_test.concept_test import FORMS, SITTINGS
+from onpath.lessons.concept_test.concept_test import FORMS, SITTINGS, sitting_of
 from onpath.lessons.course import Course
 from onpath.lessons.given import Given
 from onpath.lessons.kept.known_choices import of_today
@@ -259,7 +259,7 @@ class ClassAnswers:
             if display.shown:
                 shown = page.choices_view(question, rounds, display.revealed, words, large)
             else:
-                now = rounds[SITTINGS.index(test.name)][1]
+                now = rounds[SITTINGS.index(sitting_of(test.name))][1]
                 shown = page.hidden_view(question, now, words, large)
             views.append(shown)
         return "".join(views)

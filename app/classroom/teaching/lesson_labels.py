@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from onpath.lessons.concept_test.concept_test import SITTINGS, sitting_of
 from onpath.lessons.concept_test.titles import titles_of_tests
 from onpath.lessons.course import Course
 from onpath.lessons.schema import Lesson
@@ -19,10 +20,11 @@ def lesson_titles(course: Course, words: Words) -> dict[str, str]:
 
 def step_label(lesson: Lesson, index: int, words: Words, large: bool = False) -> str:
     """A step, by number, kind and title; for a projector without the title, which may tell what
-    will happen. A teacher also reads that a task is meant to be found by trying."""
+    will happen, and in a test, whose forms have other titles. A teacher also reads that a task is
+    meant to be found by trying."""
     step = lesson.steps[index]
     label = f"{index + 1}. {words(f'kind.{step.kind}')}"
-    if large:
+    if large or sitting_of(lesson.name) in SITTINGS:
         return label
     exploratory = any(task.exploratory for task in step.tasks())
     return f"{label}: {step.title}" + f" ({words('guide.exploratory')})" * exploratory

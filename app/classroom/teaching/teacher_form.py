@@ -95,7 +95,7 @@ class TeacherForm:
             yield _button("let_in", label, member=number, name=f"let_in{number}")
 
     def _of_answers(self) -> Iterator[FormField]:
-        """What is done with a question: closed, looked at, shown, asked again."""
+        """What is done with a question: closed, looked at, shown, asked again outside a test."""
         words = self._words
         yield from self._of_votes()
         if not self._large:
@@ -106,7 +106,8 @@ class TeacherForm:
                 yield _html("peek")
         yield _switch("shown", words("class.show_answers"))
         yield _switch("revealed", words("class.truth"))
-        yield _button("ask_again", words("class.ask_again"))
+        if self._shown[0] not in self._course.tests:
+            yield _button("ask_again", words("class.ask_again"))
 
     def _beside(self, by: int) -> Iterator[FormField]:
         """The button for the next step, or for the one before, if there is one."""

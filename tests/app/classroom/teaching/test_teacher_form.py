@@ -203,6 +203,19 @@ def test_answers_and_truth_are_shown_and_asked_again(desk: Desk) -> None:
     assert not desk.values["shown"] and desk.values["picked"] == ""
 
 
+@pytest.mark.parametrize("test", COURSE.tests)
+def test_a_test_is_not_asked_again_and_its_steps_have_no_titles_of_one_form(
+    desk: Desk, test: str
+) -> None:
+    assert PREFIX + "ask_again" in desk.fields
+    desk.set("lesson", test)
+    assert desk.room.display.lesson == test and PREFIX + "ask_again" not in desk.fields
+    titles = [step.title for step in COURSE.lesson(test, "en").steps]
+    shown = encoded(desk.form.shown()[0]).decode()
+    assert PREFIX + "next" in desk.fields
+    assert not [title for title in titles if title in shown]
+
+
 def test_a_demonstration_is_played_and_the_teachers_lab_put_back(desk: Desk) -> None:
     desk.set("step", 1.0)
     desk.set("follow", 1.0)
