@@ -187,7 +187,7 @@ def test_a_skipped_prediction_can_still_be_made(
     assert frame.get_by_text("You can still make it here").is_visible()
     opened.ask("site.open(4)")
     frame.get_by_role("radio", name="As far as before").check()
-    frame.locator(".step.open .commit").click()
+    frame.locator(".step.open .lead").click()
     assert "option" in opened.ask("site.notes.given.find(each => each.item === '4').answer")
     assert frame.get_by_role("radio", name="As far as before").is_disabled()
     opened.left()

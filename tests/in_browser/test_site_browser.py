@@ -266,7 +266,7 @@ def answered(reader: SiteReader) -> None:
     if step.locator(".sketch").count():
         reader.press("Skip the prediction")  # and see the run
         reader.ready()
-    for play in step.locator(".play button.main").all():
+    for play in step.get_by_role("button", name="Let it happen", exact=True).all():
         play.click()
         reader.played(10)
     for question in step.locator(".quiz[data-block]").all():

@@ -269,8 +269,7 @@ export class Player implements Robots {
         next.ariaLabel = waits ? phrase(page, "lesson.skip") : null
         const seen = !view || page.steps[index]!.kind !== "run" || view.happened
         next.classList.toggle("main", !waits && seen)
-        pager.querySelectorAll(".commit").forEach(each => each.remove())
-        if (view?.form && !view.committed) pager.append(view.form.commit)
+        StepView.lead(view ?? null, pager)
         if (!this.playing) this.run()
         view?.formulas()
         this.subdue()

@@ -273,8 +273,7 @@ export class Column implements Robots {
 
     private show(): void {
         const { view, pager } = this
-        pager.querySelectorAll(".commit").forEach(each => each.remove())
-        if (view?.form && !view.committed) pager.querySelector(".ways")!.append(view.form.commit)
+        StepView.lead(view, pager.querySelector(".ways")!)
         document.documentElement.classList.toggle("op-waits", view?.waits ?? false)
         view?.run()
         view?.formulas()

@@ -53,7 +53,7 @@ export function predict(page: PageData, prediction: Prediction, student: Student
     const answerKept = () => predicted(student.notes, prediction.step)
     const { data } = prediction
     const told = element.querySelector<HTMLElement>(".verdict")!
-    const commit = element.querySelector<HTMLButtonElement>(".commit")!
+    const commit = element.querySelector<HTMLButtonElement>(".lead")!
     const asked = element.querySelector<HTMLElement>(".committing")!
     element.querySelector<HTMLElement>(".after")?.setAttribute("hidden", "")
     let answer: Answer = {}

@@ -41,6 +41,7 @@ export class StepView {
     private compared: Comparison | null = null
     private shown = "" // what it compares
     private played = false // whether the run was on when it was last looked at
+    private readonly button: HTMLButtonElement | null // plays the run
 
     constructor(
         private readonly page: PageData,
@@ -53,7 +54,8 @@ export class StepView {
         section.dataset["kind"] = page.steps[index]!.kind
         page.steps[index]!.blocks.forEach((_, i) => this.prepare(i))
         section.querySelectorAll<HTMLElement>("[data-second]").forEach(each => this.prepareSecond(each))
-        section.querySelector(".play button")?.addEventListener("click", () => robots.play())
+        this.button = section.querySelector(".play button")
+        this.button?.addEventListener("click", () => robots.play())
     }
 
     /** Make a part answerable. */
@@ -108,6 +110,18 @@ export class StepView {
         const { kind, script } = this.page.steps[this.index]!
         return (this.form !== null && !this.committed) || (kind === "run" && Boolean(script) && !this.notes.played[String(this.index)])
     }
+    /** Put the main button of the step, if it has one now, beside those that turn pages, and take away another step's. */
+    static lead(view: StepView | null, ways: HTMLElement): void {
+        ways.querySelectorAll(".lead").forEach(each => each.remove())
+        if (!view) return
+        const { form, committed, button, leads, waits } = view
+        const plays = leads && !waits && !form
+        button?.classList.toggle("lead", plays)
+        if (form && !committed) ways.append(form.commit)
+        else if (button && plays) ways.append(button)
+        else if (button) view.places.section.querySelector(".play")!.prepend(button)
+    }
+
     /** Whether the step's run has been seen; a run that only the lab can play is seen in its picture. */
     get happened(): boolean {
         return Boolean(this.notes.played[String(this.index)]) || !this.page.steps[this.index]!.script
@@ -166,8 +180,7 @@ export class StepView {
         for (const show of this.asked.values()) show()
         if (step.kind !== "run") return
         const told = section.querySelector<HTMLElement>(".play")
-        const button = told?.querySelector<HTMLButtonElement>("button:not(.read)")
-        const { waits, happened } = this
+        const { waits, happened, button } = this
         if (button) {
             button.disabled = waits || !robots.ready
             button.hidden = robots.playing

@@ -11,7 +11,7 @@ import { predict, predictionAt } from "../../../../assets/web/parts/predictions"
 // A page that is loaded anew has the same storage, and nothing else of the one before.
 
 const COMMITTING = `<div class="committing"><select class="sure"><option value=""></option><option value="fairly"></option></select>
-    <textarea class="why"></textarea><button type="button" class="commit main">commit</button></div><p class="verdict"></p>`
+    <textarea class="why"></textarea><button type="button" class="lead main">commit</button></div><p class="verdict"></p>`
 const SKETCH = { kind: "sketch", quantity: "distance", label: "distance", unit: "mm", robots: ["a", "b"], seconds: 8, top: 60, bottom: 0 } as const
 const OPTIONS = `<ul class="options"><li><input type="radio" name="o" value="0"></li><li><input type="radio" name="o" value="1"></li></ul>`
 
