@@ -184,7 +184,7 @@ LAW = Law(
     gains=("K1", "K2", "K3", "K4", "K5"),
     linear=True,
     good="Held back and let go, it stays on the curve and goes on at the wanted speed without"
-    " haste. With K5 = 0 it is a guiding virtual fixture: a hand alone moves the robot along.",
+    " haste; with K5 = 0 it is a guiding virtual fixture: a hand alone moves the robot along.",
     limits="Time that is lost stays lost: after the brake it is late by as long as it was held.",
     objection="Its authors bound neither the integral nor the distance from which (16)"
     " leads back, as is done here.",

@@ -124,6 +124,7 @@ COMMANDS: dict[type, st.SearchStrategy[Any]] = {
     c.SetRunning: st.builds(c.SetRunning, st.sampled_from([None, True, True, False])),
     c.StepOnce: st.builds(c.StepOnce),
     c.Reset: st.builds(c.Reset),
+    c.RemoveLog: st.builds(c.RemoveLog),
     c.LookAt: st.builds(c.LookAt, st.one_of(st.floats(-1, 5), WILD)),
     c.LookBack: st.builds(c.LookBack, st.one_of(st.floats(-1, 5), WILD)),
     c.GoOn: st.builds(c.GoOn),
