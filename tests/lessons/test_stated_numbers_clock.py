@@ -72,7 +72,7 @@ def test_the_point_stops_where_the_feeling_outweighs_the_speed() -> None:
     ahead = both["tracker"].at(4.9, "reference") - both["tracker"].at(4.9, "place")
     assert_stated(stated, [TURN / 50, np.degrees(TURN / 50), np.degrees(ahead)])
     assert_stated(said(LESSON, r"K_1 r\,\omega/\mu = #$ m/s²"), [400 * RADIUS * TURN / 50])
-    assert_stated(said(LESSON, r"with $K_5\, r\,\omega = #$ m/s²"), [10 * RADIUS * TURN])
+    assert_stated(said(LESSON, r"asks for $K_5\, r\,\omega = #$ m/s²"), [10 * RADIUS * TURN])
     leans = [both[who].at(4.9, "force") for who in ("tracker", "follower")]
     assert_stated(said(LESSON, "At 4.9 s the brake felt # N from the one and # N"), leans)
 
@@ -199,7 +199,7 @@ def test_relatives() -> None:
     event = shown(LESSON, "Side road: the event-based clock")
     stated = said(LESSON, "it waits, but # mm off the circle. It leans on the brake with # N,")
     assert_stated(stated, [event["tracker"].at(5.1), event["tracker"].at(5.1, "force")])
-    lean = said(LESSON, "the follower with # N: all the time")
+    lean = said(LESSON, "the follower with # N: it acts")
     assert_stated(lean, [event["follower"].at(5.1, "force")])
     assert event["tracker"].largest(6, 8) < 0.01  # "it is back at once"
 
