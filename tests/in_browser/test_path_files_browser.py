@@ -90,6 +90,7 @@ def test_a_drawing_is_brought_to_the_page_its_line_pressed_and_its_size_changed(
     page.keyboard.press("Enter")
     wait_for(lambda: sides() == pytest.approx([0.7 * long] * 2, abs=1), WAIT)
     page.keyboard.press("Escape")
+    tab.open("Gains and path")
     tab.press("File…")  # the same file is there again
     page.get_by_label("Middle, up [mm]").fill("10")
     page.keyboard.press("Enter")
