@@ -9,7 +9,7 @@ from onpath.lessons.right import is_right
 from onpath.lessons.schema import Choice, NumberQuestion, Quiz, Step
 
 SECOND_TRY = ".second"
-"""Ends its item, before which stand the step and the block of the question."""
+"""The end of its item, after the step and the block of the question."""
 
 
 def second_item(index: int, block_index: int) -> str:

@@ -21,14 +21,13 @@ from onpath.app.notebook.arguments import curve_of
 from onpath.app.plant.controller_process import ControllerProcess
 from onpath.app.plant.plant_link import PlantReport
 from onpath.models.control.settable import value_of, with_values
-from onpath.models.controller.functions import REFUSALS
+from onpath.models.controller.functions import STOPPED
 from onpath.models.paths.distance import path_distance
 from onpath.models.studies.record_file import quantities
 from onpath.models.systems.robots import Robot
 
 EVERY = 0.1  # [s] between two questions to the controller
 TOLD = 1.0  # [s] between two lines; also without a measurement, after which the plant is gone
-STOPPED = [*REFUSALS].index("stopped") + 1
 NOT_SAFE = (
     "This is no safety function. Around a real arm there must be a stop that cuts the power, and"
     " its maker's limits of speed and force; keep out of its reach."

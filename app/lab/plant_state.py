@@ -23,7 +23,7 @@ class PlantState:
 
     Attributes:
         phase: "off" before the start; "starting" until its controller listens; "waiting" for the
-            first measurement; "running"; "ended", for good.
+            first measurement; "running"; "ended" until the next start.
         address: where the controller listens for it.
         laws: that can act on it.
         at_fault: its torque after the end.

@@ -24,7 +24,7 @@ from onpath.app.plant.controller_process import (
 from onpath.app.plant.plant_link import SILENCE, PlantReport
 from onpath.app.simulation.scheduled_lab import LabDisplay
 from onpath.models.control.settable import specs, value_of, values_of
-from onpath.models.controller.functions import AT_FAULT, REFUSALS
+from onpath.models.controller.functions import AT_FAULT, STOPPED
 from onpath.models.errors import CodedError, Message
 from onpath.models.paths.path_design import PathDesign
 from onpath.models.systems.parameter_specs import unknown_name
@@ -32,7 +32,6 @@ from onpath.models.systems.parameters import Parameters
 
 LOST = 2.0  # [s] without a sign of life of the page that drives, after which it ends
 SILENT = 1.0  # [s] without a measurement, after which a plant that has ended is gone
-STOPPED = [*REFUSALS].index("stopped") + 1
 TOLD = 1.0  # [s] for which the longest lateness is shown
 
 

@@ -49,6 +49,7 @@ REFUSALS = {
 }
 """Why steps are refused, with codes from 1 on; those of `Robot.reasons` follow. 0 is none."""
 _CODES = {name: number for number, name in enumerate(REFUSALS, 1)}
+STOPPED = _CODES["stopped"]  # of a controller that was told to stop
 OWN_SETTINGS = ("at_fault", "fastest")
 """Settings that a loop lacks: place in `AT_FAULT`, and largest rate of a joint, [rad/s]."""
 HOLD, DAMP = AT_FAULT.index("hold"), AT_FAULT.index("damp")

@@ -5,6 +5,7 @@ import type { Answer, Files } from "../channel/files"
 import type { FileMessage, PathFile as Wished } from "../channel/messages"
 import { made, refuse, svg, switchInput, tell } from "../core/dom"
 import { phrase, type Texts } from "../core/words"
+import { FileReading } from "./file_reading"
 import { mayBeLog } from "./log_sheet"
 import { pressed, SheetDialog } from "./sheet"
 
@@ -43,14 +44,14 @@ export function pathFromFile(texts: Texts, files: Files, chosen: ChosenFile, asL
     const partsRow = made("label", "row", made("span", "", phrase(texts, "design.parts")), parts)
     const opened = switchInput({ title: phrase(texts, "design.open_hint") })
     opened.addEventListener("change", () => void follow())
-    const chooser = Object.assign(made("input", ""), { type: "file", accept: KINDS, hidden: true })
-    const choose = pressed("main", phrase(texts, "design.upload"), () => chooser.click())
-    const state = made("p", "state"), refusal = made("p", "refusal"), helps = made("div", "row helps")
-    const bar = Object.assign(made("progress", ""), { max: 1, hidden: true, ariaLabel: phrase(texts, "design.reading") })
+    const reading = new FileReading(texts, files, sheet, phrase(texts, "design.upload"), KINDS, file => {
+        Object.assign(chosen, { file, lines: [] })
+        draw()
+        void follow()
+    })
+    const { choose, chooser, bar, state, refusal } = reading, helps = made("div", "row helps")
     const edge = `${-MARGIN} ${-MARGIN} ${SIZE + 2 * MARGIN} ${SIZE + 2 * MARGIN}`
     const picture = svg("svg", { class: "lines", viewBox: edge, role: "img", "aria-label": phrase(texts, "design.lines") })
-    state.role = "status"
-    refusal.role = "alert"
 
     const put = (use: PathFile) => {
         for (const name of NAMES) fields[name].box.valueAsNumber = use[name]
@@ -61,24 +62,11 @@ export function pathFromFile(texts: Texts, files: Files, chosen: ChosenFile, asL
         const numbers = Object.fromEntries(NAMES.map(name => [name, limit(fields[name])])) as Record<NumberName, number>
         return { ...numbers, kind: "path", opened: opened.checked, parts: numbersIn(parts.value, chosen.lines.length) }
     }
-    let isBusy = false, isStale = false
     const follow = async () => {
-        isStale = true
-        if (!chosen.file || isBusy) return
-        isBusy = choose.disabled = true
-        bar.hidden = false
-        refuse(refusal, "")
-        helps.replaceChildren()
-        tell(state, phrase(texts, "design.reading"))
-        let answer: Answer | null = null
-        while (isStale && !given.signal.aborted) {
-            isStale = false
-            chosen.use = use()
-            answer = await files.send(chosen.file, chosen.use, share => (bar.value = share), given.signal)
-        }
-        isBusy = choose.disabled = false
-        bar.hidden = true
-        if (answer) show(answer)
+        if (chosen.file && !reading.isBusy) helps.replaceChildren()
+        const answer = await reading.read(chosen.file, () => (chosen.use = use()), given.signal)
+        if (!answer) return
+        show(answer)
         if (document.activeElement === document.body) choose.focus() // it was not to be pressed meanwhile
     }
     const show = (answer: Answer) => {
@@ -107,7 +95,7 @@ export function pathFromFile(texts: Texts, files: Files, chosen: ChosenFile, asL
         })))
     }
     picture.addEventListener("click", ({ clientX, clientY }) => {
-        if (isBusy || chosen.lines.length < 2) return
+        if (reading.isBusy || chosen.lines.length < 2) return
         const { left, top, width, height } = picture.getBoundingClientRect()
         const scale = (SIZE + 2 * MARGIN) / Math.min(width, height)
         const at = [(clientX - left - width / 2) * scale + SIZE / 2, SIZE / 2 - (clientY - top - height / 2) * scale] as const
@@ -116,24 +104,9 @@ export function pathFromFile(texts: Texts, files: Files, chosen: ChosenFile, asL
         parts.value = (isTaken ? others : [...others, line].sort((a, b) => a - b)).join(", ")
         void follow()
     })
-    const take = (file: File | undefined) => {
-        if (!file || isBusy) return
-        Object.assign(chosen, { file, lines: [] })
-        draw()
-        void follow()
-    }
-    chooser.addEventListener("change", () => {
-        take(chooser.files?.[0])
-        chooser.value = "" // the same file may be chosen again
-    })
-    sheet.element.addEventListener("dragover", event => event.preventDefault())
-    sheet.element.addEventListener("drop", event => {
-        event.preventDefault()
-        take(event.dataTransfer?.files[0])
-    })
     sheet.element.addEventListener("paste", event => {
         if (event.target instanceof HTMLInputElement && event.target.type === "number") return
-        take(pastedFile(event))
+        reading.give(pastedFile(event))
     })
     put(chosen.use)
     draw()
@@ -145,7 +118,7 @@ export function pathFromFile(texts: Texts, files: Files, chosen: ChosenFile, asL
         picture, partsRow, ...rows, open,
     )
     sheet.open(choose)
-    take(dropped)
+    reading.give(dropped)
     return sheet
 }
 

@@ -5,6 +5,7 @@ import type { Answer, Files } from "../channel/files"
 import type { LogFile, LogQuantity } from "../channel/messages"
 import { made, refuse, tell } from "../core/dom"
 import { phrase, type Texts } from "../core/words"
+import { FileReading } from "./file_reading"
 import { pressed, SheetDialog } from "./sheet"
 
 const KINDS = ".csv,.txt,.tsv,.npy,.npz,.mat"
@@ -29,37 +30,25 @@ export const noLog = (): ChosenLog => ({ file: null, columns: {}, units: {} })
 export function logFromFile(texts: Texts, files: Files, chosen: ChosenLog, shown: () => string, remove: () => void, dropped?: File): SheetDialog {
     const given = new AbortController()
     const sheet = new SheetDialog(texts, "log", phrase(texts, "log.title"), () => given.abort())
-    const chooser = Object.assign(made("input", ""), { type: "file", accept: KINDS, hidden: true })
-    const choose = pressed("main", phrase(texts, "log.file"), () => chooser.click())
+    const reading = new FileReading(texts, files, sheet, phrase(texts, "log.file"), KINDS, file => {
+        Object.assign(chosen, { ...noLog(), file })
+        rows.replaceChildren()
+        void read()
+    })
+    const { choose, chooser, bar, state, refusal } = reading, rows = made("div", "columns")
     const gone = pressed("", phrase(texts, "chart.remove_log"), () => {
         remove()
         gone.hidden = true
         tell(state, "")
         choose.focus()
     })
-    const state = made("p", "state"), refusal = made("p", "refusal"), rows = made("div", "columns")
-    const bar = Object.assign(made("progress", ""), { max: 1, hidden: true, ariaLabel: phrase(texts, "design.reading") })
-    state.role = "status"
-    refusal.role = "alert"
     gone.hidden = !shown()
 
-    let isBusy = false, isStale = false
+    const use = (): LogFile => ({ kind: "log", columns: chosen.columns, units: chosen.units })
     const read = async () => {
-        isStale = true
-        if (!chosen.file || isBusy) return
-        isBusy = choose.disabled = true
-        bar.hidden = false
-        refuse(refusal, "")
-        tell(state, phrase(texts, "design.reading"))
-        let answer: Answer | null = null
-        while (isStale && !given.signal.aborted) {
-            isStale = false
-            const use: LogFile = { kind: "log", columns: chosen.columns, units: chosen.units }
-            answer = await files.send(chosen.file, use, share => (bar.value = share), given.signal)
-        }
-        isBusy = choose.disabled = false
-        bar.hidden = true
-        if (answer) show(answer)
+        const answer = await reading.read(chosen.file, use, given.signal)
+        if (!answer) return
+        show(answer)
         if (document.activeElement === document.body) choose.focus() // it was not to be pressed meanwhile
     }
     const show = ({ state: found, why, columns, quantities }: Answer) => {
@@ -94,26 +83,11 @@ export function logFromFile(texts: Texts, files: Files, chosen: ChosenLog, shown
         })
         return made("div", "row", made("b", "", name), select, box, list)
     }
-    const take = (file: File | undefined) => {
-        if (!file || isBusy) return
-        Object.assign(chosen, { ...noLog(), file })
-        rows.replaceChildren()
-        void read()
-    }
-    chooser.addEventListener("change", () => {
-        take(chooser.files?.[0])
-        chooser.value = "" // the same file may be chosen again
-    })
-    sheet.element.addEventListener("dragover", event => event.preventDefault())
-    sheet.element.addEventListener("drop", event => {
-        event.preventDefault()
-        take(event.dataTransfer?.files[0])
-    })
     if (shown()) tell(state, phrase(texts, "log.drawn", { file: shown() }))
     sheet.body.append(
         made("p", "note", phrase(texts, "log.hint")), made("div", "row", choose, chooser, gone, bar), state, refusal, rows,
     )
     sheet.open(choose)
-    take(dropped)
+    reading.give(dropped)
     return sheet
 }
