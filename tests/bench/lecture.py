@@ -43,7 +43,7 @@ from tests.support.starved import starved
 KEY = "k7mf2xqa9tzr"
 LESSON, QUESTION = "01-path-or-timetable", 4
 AGAIN = 0.5  # [s] between a page's tries to connect
-PATIENCE = 180.0  # [s]; only ends a run that would hang
+PATIENCE = 400.0  # [s], longer than the longest cut; only ends a run that would hang
 
 
 class Page:
@@ -438,15 +438,16 @@ def _served(count: int, two: bool) -> Iterator[Lecture]:
         folder = Path(name)
         url, path = file_url(folder / "labs.db"), f"c/{class_code_of(KEY)}/"
         own = {"ONPATH_TEACHER_KEY": KEY, "XDG_DATA_HOME": name}
+        options = ["--classroom", "--most-clients", str(count + 10)]
         with server_core():
             if two:
-                found = stack.enter_context(site(folder, str(url), ["--classroom"], **own))
+                found = stack.enter_context(site(folder, str(url), options, **own))
                 processes, through, origin = found.processes, found.port, ORIGIN
                 address = f"ws://{HOST}/{path}"
             else:
                 (port,) = free_ports(1)
-                options = ["--classroom", "--most-clients", str(count + 10), "--log-level", "error"]
-                process = LabProcess(port, options, {DATABASE: str(url), **own})
+                told = [*options, "--log-level", "error"]
+                process = LabProcess(port, told, {DATABASE: str(url), **own})
                 stack.callback(process.kill)
                 process.wait_until_well()
                 processes, through, origin = [process], 0, ""
