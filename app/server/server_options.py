@@ -16,7 +16,7 @@ from onpath.lessons.course import Course
 from onpath.models.paths.path_design import PathDesign
 from onpath.models.systems.catalogue import FIVE_BAR, RobotEntry
 
-MOST_CLIENTS = 64
+MOST_CLIENTS = 80  # a class of sixty from one network, its teacher and walls, and some who reload
 USUAL_RETENTION = Retention()
 
 
