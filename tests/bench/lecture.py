@@ -15,7 +15,7 @@ import secrets
 import statistics
 import sys
 import tempfile
-from collections.abc import Awaitable, Callable, Iterator
+from collections.abc import Awaitable, Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -67,6 +67,8 @@ class Page:
         self.since = self.moved = 0.0
         self.pending = dict[str, dict[str, Any]]()
         self.stored = dict[str, float]()
+        self._awake = asyncio.Event()
+        self._awake.set()
         self._page = ""
         self._socket: ClientConnection | None = None
         self._dead: ClientConnection | None = None  # of a cable that was pulled
@@ -95,8 +97,17 @@ class Page:
             self._dead.transport.abort()
         self.since = 0.0
 
+    def sleep(self) -> None:
+        """Read and send nothing, as a page on a phone that has been put away."""
+        self._awake.clear()
+
+    def wake(self) -> None:
+        """Go on after a sleep."""
+        self._awake.set()
+
     async def _stay(self) -> None:
         while True:
+            await self._awake.wait()
             with suppress(OSError, WebSocketException, TimeoutError):
                 await self._serve()
             self._socket, self.since = None, 0.0
@@ -122,6 +133,7 @@ class Page:
             if monotonic() > saw + SEES:
                 saw = monotonic()
                 await socket.send(SEEN)
+            await self._awake.wait()
             await self._take(json.loads(raw))
 
     async def _take(self, message: dict[str, Any]) -> None:
@@ -242,8 +254,11 @@ class Lecture:
         await until(lambda: all(step in each.seen for each in self.students), f"step {step}")
         return max(each.seen[step] for each in self.students) - begun
 
-    async def votes(self, within: float = 0.0) -> list[float]:
+    async def votes(self, within: float = 0.0, of: Sequence[Page] = ()) -> list[float]:
         """Students vote within a time, [s]: how long each waits until the vote is stored, [s].
+
+        Args:
+            of: those who vote; all by default.
 
         Raises:
             ValueError: a vote was lost or doubled.
@@ -255,8 +270,9 @@ class Lecture:
             await asyncio.sleep(random.uniform(0.0, within))  # as people do
             return await each.vote(key, option)
 
-        waits = list[float](await asyncio.gather(*map(vote, self.students)))
-        for each in self.students:
+        voters = of or self.students
+        waits = list[float](await asyncio.gather(*map(vote, voters)))
+        for each in voters:
             state = self.records.load(each.code) or {}
             notes = read_progress(state.get("lessons")).notes[LESSON]
             if [given.key for given in notes.given].count(key) != 1:
@@ -313,6 +329,19 @@ class Lecture:
         await votes
         await until(lambda: all(QUESTION in each.seen for each in self.students), "the question")
         return max(max(max(e.stored.values()), e.seen[QUESTION]) for e in self.students) - begun
+
+    async def doze(self, seconds: float) -> float:
+        """Half of the phones sleep while the others vote: from their waking until all are back."""
+        sleeping, voting = self.students[::2], self.students[1::2]
+        for each in sleeping:
+            each.sleep()
+        await self.votes(of=voting)
+        await asyncio.sleep(seconds)
+        begun = monotonic()
+        for each in sleeping:
+            each.wake()
+        await self.votes(of=sleeping)
+        return max(max(each.stored.values()) for each in sleeping) - begun
 
     async def end(self) -> None:
         """All leave."""
@@ -372,6 +401,15 @@ def cut(seconds: float) -> Row:
     return row
 
 
+def dozing(seconds: float) -> Row:
+    """The row of phones that sleep."""
+
+    async def row(lecture: Lecture) -> str:
+        return f"the last one is back {await lecture.doze(seconds):.1f} s after it wakes"
+
+    return row
+
+
 def rows(long: bool) -> dict[str, tuple[bool, Row]]:
     """The rows of the table: whether there are two processes behind nginx, and what is done."""
     return {
@@ -381,6 +419,7 @@ def rows(long: bool) -> dict[str, tuple[bool, Row]]:
         "kill -9, two behind nginx": (True, killed),
         "a tenth of a core for 30 s": (False, starving(30.0 if long else 5.0)),
         "cable pulled": (False, cut(300.0 if long else 3.0)),
+        "half of the phones asleep": (False, dozing(300.0 if long else 3.0)),
     }
 
 
@@ -411,7 +450,7 @@ def minute_of(count: int) -> None:
     async def run() -> None:
         with _served(count, two=False) as lecture:
             await lecture.begin(count, within=2.0)
-            for row in (quiet, reloaded, starving(3.0), cut(2.0)):
+            for row in (quiet, reloaded, starving(3.0), cut(2.0), dozing(2.0)):
                 sys.stdout.write(f"{await row(lecture)}\n")
             await lecture.end()
 
