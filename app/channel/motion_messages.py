@@ -59,13 +59,13 @@ class LogMessage(Struct, frozen=True, tag_field="is", tag="log"):
 
     Attributes:
         file: name of its file; empty: there is no log.
-        step: from one row to the next, [s]; the first one is at 0.
+        times: of its rows, [s].
         fields: names of fields as in `FrameMessage`, with the number of units that an SI unit has,
-            and each of its numbers in all rows; null where it is not known.
+            and each of its numbers in all rows; null where it is not known, as in a gap.
     """
 
     file: str = ""
-    step: float = 0.0
+    times: tuple[float, ...] = ()
     fields: tuple[tuple[str, float, tuple[tuple[int | None, ...], ...]], ...] = ()
 
 

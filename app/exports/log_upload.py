@@ -12,7 +12,7 @@ from onpath.app.lab.shown_log import ShownLog, shown_log
 from onpath.models.errors import Coded, CodedError, Message
 from onpath.models.studies.array_file import ENDINGS
 from onpath.models.studies.log_guess import guessed_columns
-from onpath.models.studies.log_motion import logged_motion
+from onpath.models.studies.log_motion import first_part, logged_motion
 from onpath.models.studies.record_file import log_columns, quantities, read_records, units_of
 from onpath.models.studies.table_file import column_names
 from onpath.models.systems.catalogue import ROBOTS
@@ -48,7 +48,7 @@ class ReadLog:
         found: the log, or why there is none.
         columns: names of the file's columns.
         quantities: as what they are read.
-        is_whole: whether it is the whole file, and not what comes before a gap.
+        is_whole: whether it is the whole file, and not only its first law.
     """
 
     found: ShownLog | Message | Exception
@@ -106,8 +106,9 @@ def _read(
     units = {each.name: each.unit for each in wanted if each.column}
     records = read_records(path, robot, log_columns(robot, columns, units))
     plant = robot.plant(upload.parameters)
-    motion = logged_motion(records[0][1], robot, plant)
-    return shown_log(upload.name, upload.robot, motion), len(records) == 1
+    part = first_part(records)
+    motion = logged_motion(part, robot, plant)
+    return shown_log(upload.name, upload.robot, motion), len(part) == len(records)
 
 
 def _reason(error: ValueError) -> Message | Exception:

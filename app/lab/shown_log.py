@@ -73,8 +73,7 @@ def log_data(log: ShownLog) -> dict[str, Any]:
     return {
         "file": log.file,
         "robot": log.robot,
-        "step": log.motion.dt,
-        "rows": len(log.motion.y),
+        "rows": len(log.motion.t),
         **{name: b64encode(x.astype("<f4").tobytes()).decode() for name, x in values.items()},
     }
 
@@ -82,21 +81,24 @@ def log_data(log: ShownLog) -> dict[str, Any]:
 def log_from(data: Any) -> ShownLog | None:
     """Inverse of `log_data`; None for anything that is no log."""
     try:
-        rows, step = int(data["rows"]), float(data["step"])
-        if not 0 < rows <= MOST_ROWS or not 0 < step < np.inf:
+        rows = int(data["rows"])
+        if not 0 < rows <= MOST_ROWS:
             return None
         arrays = {name: _array(data[name], rows) for name in _ARRAYS}
+        t = arrays.pop("t")[:, 0]
         file, robot = str(data["file"])[-LONGEST_NAME:], str(data["robot"])
     except (KeyError, TypeError, ValueError):
         return None
-    return ShownLog(file, robot, LoggedMotion(dt=step, **arrays))
+    if not (np.diff(t) >= 0).all():  # NaN fails too
+        return None
+    return ShownLog(file, robot, LoggedMotion(t=t, **arrays))
 
 
 def _array(text: str, rows: int) -> np.ndarray:
     values = np.frombuffer(b64decode(text, validate=True), "<f4").reshape(rows, -1)
-    if values.shape[1] > MOST_COLUMNS or not np.isfinite(values).all():
+    if values.shape[1] > MOST_COLUMNS or np.isinf(values).any():
         raise ValueError("no numbers of a log")
     return values.astype(float)
 
 
-_ARRAYS = tuple(f.name for f in dataclasses.fields(LoggedMotion) if f.name != "dt")
+_ARRAYS = tuple(f.name for f in dataclasses.fields(LoggedMotion))

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from onpath.app.channel.messages import encoded
 from onpath.app.channel.motion_messages import LogMessage
 from onpath.app.lab.snapshots.page_snapshot import LogSnapshot
-from onpath.app.view.log_curves import fields_of_efforts, fields_on_path
+from onpath.app.view.log_curves import fields_of_efforts, fields_on_path, times_of
 
 NO_LOG = encoded(LogMessage())
 
@@ -54,4 +54,5 @@ class PageLog:
         motion = log.log.motion
         along = fields_on_path(motion, log.frame, log.curve, is_level_set=log.is_level_set)
         fields = (*along, *fields_of_efforts(motion))
-        self._made = log, encoded(LogMessage(file=log.log.file, step=motion.dt, fields=fields))
+        times = times_of(motion)
+        self._made = log, encoded(LogMessage(file=log.log.file, times=times, fields=fields))

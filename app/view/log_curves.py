@@ -14,6 +14,11 @@ LogField = tuple[str, float, tuple[tuple[int | None, ...], ...]]
 """As in `LogMessage.fields`."""
 
 
+def times_of(motion: LoggedMotion) -> tuple[float, ...]:
+    """The times of a log's rows, to 0.1 ms, [s]."""
+    return tuple(np.round(motion.t, 4).tolist())
+
+
 def fields_on_path(
     motion: LoggedMotion, frame: Frame, curve: Curve, *, is_level_set: bool
 ) -> tuple[LogField, ...]:
@@ -24,7 +29,8 @@ def fields_on_path(
     """
     found = along_path(motion, frame, curve, level_set=is_level_set)
     if curve.closed:
-        found["theta"] = np.unwrap(found["theta"])
+        known = np.isfinite(found["theta"])
+        found["theta"][known] = np.unwrap(found["theta"][known])
     return tuple(
         _field(name, x[:, None])
         for name, x in found.items()
@@ -35,7 +41,8 @@ def fields_on_path(
 def fields_of_efforts(motion: LoggedMotion) -> tuple[LogField, ...]:
     """Torques, and forces if there are any, which do not depend on a path."""
     torque = _field("u", motion.u)
-    return (torque, _field("force", motion.force)) if motion.force.any() else (torque,)
+    has_forces = np.nan_to_num(motion.force).any()
+    return (torque, _field("force", motion.force)) if has_forces else (torque,)
 
 
 def _field(name: str, values: Array) -> LogField:

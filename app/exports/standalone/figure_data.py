@@ -27,7 +27,7 @@ from onpath.app.lab.path_editor import BLEND, HALVINGS
 from onpath.app.lab.plot_rows import row_data
 from onpath.app.lab.plot_samples import sample_layout
 from onpath.app.view.captions import FULL, OFF, RETURNS
-from onpath.app.view.log_curves import fields_of_efforts, fields_on_path
+from onpath.app.view.log_curves import fields_of_efforts, fields_on_path, times_of
 from onpath.app.view.notes import NEVER, alpha_note
 from onpath.lessons.labels import path_label
 from onpath.lessons.sides import law_text, law_titles
@@ -223,7 +223,7 @@ def _logged(figure: FigureChoice) -> dict[str, Any] | None:
     frame, is_level_set = figure.machine.frame, own.across == LEVEL_SET
     return {
         "name": log.file,
-        "step": log.motion.dt,
+        "times": times_of(log.motion),
         "fields": fields_of_efforts(log.motion),
         "paths": [
             fields_on_path(log.motion, frame, raised(curve, own), is_level_set=is_level_set)

@@ -16,7 +16,7 @@ class ShowLog(Command):
     """Draw a log over the plots, from the beginning of each run on, in the place of any other.
 
     Attributes:
-        is_whole: whether it is the whole file, and not what comes before a gap.
+        is_whole: whether it is the whole file, and not only its first law.
     """
 
     log: ShownLog

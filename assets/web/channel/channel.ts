@@ -420,7 +420,7 @@ export class ServerEngine implements Engine {
             this.wall = message
             this.tell("class")
         } else if (message.is === "log") {
-            this.log = message.file ? logCurves(message.file, message.step, message.fields) : null
+            this.log = message.file ? logCurves(message.file, message.times, message.fields) : null
             this.tell("log")
         } else if (message.is === "remote") {
             this.remote = message

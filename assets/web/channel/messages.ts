@@ -495,10 +495,10 @@ export interface LogMessage {
     is: "log"
     /** name of its file; empty: there is no log. */
     file: string
-    /** from one row to the next, [s]; the first one is at 0. */
-    step: number
+    /** of its rows, [s]. */
+    times: number[]
     /** names of fields as in `FrameMessage`, with the number of units that an SI unit has, and each of its numbers in all rows;
-     * null where it is not known. */
+     * null where it is not known, as in a gap. */
     fields: ([string, number, ((number | null)[])[]])[]
 }
 

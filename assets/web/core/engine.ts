@@ -66,10 +66,9 @@ export interface LogCurves {
 /** Numbers as they are told, in units of which an SI unit has some. */
 export type ToldField = readonly [name: string, unit: number, columns: readonly (readonly (number | null)[])[]]
 
-export function logCurves(name: string, step: number, told: readonly ToldField[]): LogCurves {
+export function logCurves(name: string, times: readonly number[], told: readonly ToldField[]): LogCurves {
     const fields = new Map(told.map(([field, unit, columns]) => [field, columns.map(column => column.map(each => (each === null ? NaN : each / unit)))]))
-    const rows = [...fields.values()][0]?.[0]?.length ?? 0
-    return { name, times: Array.from({ length: rows }, (_, i) => i * step), fields }
+    return { name, times, fields }
 }
 
 /** The path, as lines through its points. */

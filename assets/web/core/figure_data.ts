@@ -107,7 +107,7 @@ export interface FigureData extends Texts<"language" | "module"> {
     >
     rows: RowData[]
     /** What a real arm has logged: what does not depend on the path, and what does, for each path. */
-    logged?: { name: string; step: number; fields: ToldField[]; paths: ToldField[][] } | null
+    logged?: { name: string; times: number[]; fields: ToldField[]; paths: ToldField[][] } | null
     sides: SideData[]
     laws: LawData[]
     drawings: DrawingsData

@@ -76,11 +76,17 @@ export class Sheet {
     }
 }
 
+/** A line through points; it is open where a number is not known. */
 export function stroke(ink: CanvasRenderingContext2D, points: readonly Pixel[], colour: string, width: number): void {
     ink.strokeStyle = colour
     ink.lineWidth = width
     ink.beginPath()
-    for (const [x, y] of points) ink.lineTo(x, y)
+    let before = NaN
+    for (const [x, y] of points) {
+        if (Number.isNaN(before)) ink.moveTo(x, y)
+        else ink.lineTo(x, y) // does nothing at NaN
+        before = y
+    }
     ink.stroke()
 }
 

@@ -324,7 +324,7 @@ export class Chart {
                 return other === line || own === null || its === null ? 90 : Math.abs(this.y(own) - this.y(its))
             }))
             const kept = this.places[i]
-            const times = Array.from({ length: TRIED }, (_, k) => last - (k / (TRIED - 1)) * (last - first))
+            const times = Array.from({ length: TRIED }, (_, k) => last - (k / (TRIED - 1)) * (last - first)).filter(time => valueAt(line, time) !== null)
             const scored = times.map(time => [apart(time), time] as const)
             if (kept !== undefined && kept >= first && kept <= last) scored.push([1.5 * apart(kept) + 1, kept]) // so that it stays
             scored.sort((a, b) => b[0] - a[0])

@@ -57,7 +57,7 @@ export class Simulation {
         if (!log) return null
         const known = this.logged
         if (known?.path === path && known.edited === edited) return known.curves
-        const curves = logCurves(log.name, log.step, [...log.fields, ...(edited ? [] : log.paths[path]!)])
+        const curves = logCurves(log.name, log.times, [...log.fields, ...(edited ? [] : log.paths[path]!)])
         this.logged = { path, edited, curves }
         return curves
     }

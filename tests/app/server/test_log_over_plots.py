@@ -9,6 +9,8 @@ from typing import Any
 import msgspec
 import numpy as np
 import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
 
 import onpath
 from onpath.app.exports.log_upload import LogUpload, read_log
@@ -73,7 +75,7 @@ def test_a_log_is_told_as_curves_of_the_run_that_it_is(motion: onpath.Run) -> No
     do(lab, ShowLog(found))
     assert "arm.csv" in lab.message
     assert page.look(lab)["file"] == "arm.csv"
-    times = page.knows["step"] * np.arange(len(page.field("distance")[0]))
+    times = np.array(page.knows["times"])
     for name, true in (
         ("distance", motion.distance),
         ("theta", motion.theta),
@@ -85,6 +87,33 @@ def test_a_log_is_told_as_curves_of_the_run_that_it_is(motion: onpath.Run) -> No
         apart = np.abs(page.field(name)[0] - np.interp(times, motion.t, true))[calm]
         assert apart.max() < 0.02 * max(np.abs(true).max(), 1e-3), name
     assert [name for name, _, _ in page.knows["fields"]].count("force") == 0
+
+
+@settings(max_examples=25)
+@given(st.lists(st.floats(0.0, 1.9), min_size=1, max_size=5), st.floats(0.06, 0.5))
+def test_a_log_with_gaps_is_told_whole_and_open_at_the_gaps(
+    motion: onpath.Run, begins: list[float], length: float
+) -> None:
+    """What is told are the rows that there are, at their times, and nothing between."""
+    lines = written(motion).decode().splitlines()
+    t = np.array([float(line.partition(";")[0]) for line in lines])
+    gone = np.any([(t > begin) & (t < begin + length) for begin in begins], axis=0)
+    kept = t[~gone]
+    parts = np.split(kept, np.flatnonzero(np.diff(kept) > 0.05) + 1)
+    assume(all(len(part) >= 20 for part in parts))  # shorter ones are left out
+    rows = [line for line, is_gone in zip(lines, gone, strict=True) if not is_gone]
+    found = read("\n".join(rows).encode())
+    assert isinstance(found.found, ShownLog) and found.is_whole
+    lab, page = new_lab(), Page()
+    do(lab, ShowLog(found.found))
+    page.look(lab)
+    times = kept[0] + np.array(page.knows["times"])
+    known = np.isfinite(page.field("distance")[0])
+    assert np.count_nonzero(~known) == len(parts) - 1
+    within = [(times >= part[0] - 1e-3) & (times <= part[-1] + 1e-3) for part in parts]
+    assert np.array_equal(np.any(within, axis=0), known) and all(np.any(within, axis=1))
+    true = np.transpose([np.interp(times[known], motion.t, each) for each in motion.y.T])
+    assert np.abs(found.found.motion.y[known] - true).max() < 1e-4
 
 
 def test_the_curves_follow_the_path_once_it_rests(motion: onpath.Run) -> None:
@@ -140,7 +169,7 @@ def test_it_is_kept_with_the_lab(motion: onpath.Run) -> None:
     other = Lab(loop_cache(), FIVE_BAR, NO_LESSONS)
     put_back(other, state)
     assert other.log is not None and other.log.file == "arm.csv"
-    for name in ("y", "y_rate", "u", "force"):
+    for name in ("t", "y", "y_rate", "u", "force"):
         kept = getattr(other.log.motion, name)
         assert np.allclose(kept, getattr(found.motion, name), rtol=1e-6, atol=1e-9)
     bad = {**log_data(found), "y": "AAAA"}

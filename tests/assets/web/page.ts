@@ -37,16 +37,19 @@ export function resize(element: Element, width: number, height: number): void {
 export class Ink {
     texts: { text: string; x: number; y: number }[] = []
     lines: (readonly [number, number])[][] = []
-    private line: (readonly [number, number])[] = []
+    private path: (readonly [number, number])[][] = []
     measureText(text: string): { width: number } { return { width: 7 * text.length } }
     clearRect(): void {
         this.texts = []
         this.lines = []
     }
-    beginPath(): void { this.line = [] }
-    lineTo(x: number, y: number): void { this.line.push([x, y]) }
-    moveTo(x: number, y: number): void { this.line.push([x, y]) }
-    stroke(): void { if (this.line.length) this.lines.push(this.line) }
+    beginPath(): void { this.path = [] }
+    moveTo(x: number, y: number): void { if (Number.isFinite(x + y)) this.path.push([[x, y]]) }
+    lineTo(x: number, y: number): void {
+        if (!this.path.length) this.moveTo(x, y)
+        else if (Number.isFinite(x + y)) this.path.at(-1)!.push([x, y])
+    }
+    stroke(): void { this.lines.push(...this.path) }
     fillText(text: string, x: number, y: number): void { this.texts.push({ text, x, y }) }
     static readonly nothing = (): void => {}
 }

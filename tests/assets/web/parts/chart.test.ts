@@ -51,6 +51,23 @@ function drawn(seed: number, width = 600, height = 200): { chart: Chart; texts: 
     return { chart, texts, lines }
 }
 
+test("a line is open where its values are not known, and its name is elsewhere", () => {
+    for (let seed = 1; seed < 30; seed++) {
+        const draw = chance(seed), { times, values } = random(seed, 30), chart = drawn(seed).chart
+        const known = values.map(value => (draw() < 0.2 ? NaN : value))
+        chart.lines = [{ name: "log", times, values: known, tone: "ink", dashed: false }]
+        Object.assign(chart, { from: times[0], until: times.at(-1) })
+        chart.draw()
+        const pieces: (readonly [number, number])[][] = [[]]
+        known.forEach((value, i) => Number.isNaN(value) ? pieces.push([]) : pieces.at(-1)!.push([chart.x(times[i]!), chart.y(value)]))
+        const { lines, texts } = inkOf(chart.sheet.canvas)
+        for (const piece of pieces.filter(each => each.length)) assert.ok(lines.some(line => JSON.stringify(line) === JSON.stringify(piece)))
+        const places = new Set(lines.flat().map(([x]) => x))
+        assert.ok(places.size >= known.filter(Number.isFinite).length)
+        for (const { text, y } of texts) if (text === "log") assert.ok(Number.isFinite(y))
+    }
+})
+
 test("place and value are each other's inverse", () => {
     const { chart } = drawn(1), draw = chance(2)
     for (let k = 0; k < 100; k++) {
