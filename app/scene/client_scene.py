@@ -204,7 +204,7 @@ class ClientScene:
         stage = stage_of(robot, DARK if look.dark else LIGHT, look.plain)
         is_shown = bool(first.key.student) or first.plant is not None
         callbacks = SceneCallbacks() if is_shown else self._callbacks(robot)
-        self._scene = Scene(self.client, stage, callbacks, titled=False)
+        self._scene = Scene(self.client, stage, callbacks, titled=False, is_narrow=look.upright)
         self._scene.build(first)
         one_at_a_time.rest()
         self._overlays = Overlays(

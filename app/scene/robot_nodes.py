@@ -38,6 +38,8 @@ PEN = (0.42, 0.5, 0.42)
 EXTRA = (0.4, 0.1, 0.4)
 RING = ((0.85, 0.06, 0.85), (0.55, 0.06, 0.55))
 DOT = ((0.62, 0.06, 0.62), (0.42, 0.06, 0.42))
+LARGE = 2.0
+"""How much wider a marker is in a narrow picture."""
 
 
 @lru_cache(maxsize=32)  # for every page
@@ -65,19 +67,21 @@ def bar_colours(side: str, counts: Counts) -> np.ndarray:
 
 
 def part_looks(
-    side: str, law: str, counts: Counts, motors: Sequence[int] = ()
+    side: str, law: str, counts: Counts, motors: Sequence[int] = (), is_narrow: bool = False
 ) -> tuple[list[tuple[float, ...]], list[np.ndarray]]:
     """Scales and linear colours of a robot's bearings, pen, marker and extra points.
 
     Joints in `motors` are drawn as motors. The marker of a law that aims at a reference point is a
     ring; that of the closest point is a dot with a white rim. Each consists of two discs, one in
-    front of the other.
+    front of the other, wider if the picture is narrow.
     """
     extras = counts.marks
     dark = palette.OF_SIDE[side].toward(palette.INK, 0.45)
     discs, inks = DOT, (palette.WHITE, dark)
     if law_named(law).aim == "theta_ref":
         discs, inks = RING, (dark, palette.WHITE)
+    wider = LARGE if is_narrow else 1.0
+    discs = tuple((wider * x, depth, wider * z) for x, depth, z in discs)
     driven = [i in motors for i in range(counts.joints)]
     joints = [palette.MOTOR if motor else palette.STEEL for motor in driven]
     colours = [*joints, palette.INK, *inks, *[palette.STEEL] * extras]
@@ -180,6 +184,7 @@ class RobotNodes:
         counts: numbers of parts of each robot.
         laws: their control laws.
         poses: their initial poses.
+        is_narrow: whether the page is so narrow that markers must be larger.
     """
 
     def __init__(
@@ -189,8 +194,9 @@ class RobotNodes:
         counts: Counts,
         laws: dict[str, str],
         poses: Poses,
+        is_narrow: bool = False,
     ) -> None:
-        self._laws = laws
+        self._laws, self._is_narrow = laws, is_narrow
         self._counts, self._motors = counts, stage.motors
         self._bases = bases = stage.bases
         self._force_scale = stage.force_scale
@@ -280,8 +286,8 @@ class RobotNodes:
 
     def _part_looks(self) -> tuple[np.ndarray, np.ndarray]:
         """`part_looks` of all robots, shape (parts, 3) each."""
-        laws = self._laws.items()
-        looks = [part_looks(side, law, self._counts, self._motors) for side, law in laws]
+        counts, motors, narrow = self._counts, self._motors, self._is_narrow
+        looks = [part_looks(side, law, counts, motors, narrow) for side, law in self._laws.items()]
         scales = [scale for scales, _ in looks for scale in scales]
         return np.array(scales), np.stack([colour for _, colours in looks for colour in colours])
 

@@ -54,6 +54,7 @@ class Scene:
         hooks: callbacks of the scene.
         words: message catalogue for titles and sizes.
         titled: whether titles and the sizes of forces are drawn; else the page shows them.
+        is_narrow: whether the page is so narrow that markers must be larger.
 
     Attributes:
         mouse: the mouse on end-points and control points.
@@ -66,8 +67,9 @@ class Scene:
         hooks: SceneCallbacks | None = None,
         words: Words = ENGLISH,
         titled: bool = True,
+        is_narrow: bool = False,
     ) -> None:
-        self._client, self._titled = client, titled
+        self._client, self._titled, self._is_narrow = client, titled, is_narrow
         self._stage, self._words = stage, words
         self._sides = list(stage.bases)
         self._origins = stage.origins
@@ -110,6 +112,7 @@ class Scene:
             counts=motion.counts,
             laws=snapshot.laws,
             poses=poses_of(self._stage, motion),
+            is_narrow=self._is_narrow,
         )
         self._contacts = ContactNodes(
             self._client.scene, self._stage, self._words, labelled=self._titled

@@ -13,13 +13,13 @@ from onpath.lessons.schema import Lesson
 
 
 def lesson_sheet(run: LessonState) -> LessonSheet:
-    """The lessons in the course's order, between the tests, and the routes."""
+    """The lessons in the course's order, then the tests, and the routes."""
     language, numbers = run.words.language, run.course.numbers()
     lessons = [lesson_card(run.course.lesson(n, language), run, numbers[n]) for n in numbers]
     before, after = (_test_cards(name, run) for name in (BEFORE, AFTER))
     routes = [_route_card(name, route, run) for name, route in run.course.routes.items()]
     return LessonSheet(
-        open=sitting_of(run.progress.lesson), lessons=[*before, *lessons, *after], routes=routes
+        open=sitting_of(run.progress.lesson), lessons=[*lessons, *before, *after], routes=routes
     )
 
 

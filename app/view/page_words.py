@@ -15,6 +15,7 @@ from onpath.lessons.words import Words
 CHART = (
     *("chart.title", "chart.held", "chart.pulled", "chart.centre", "chart.table", "chart.time"),
     *("chart.acts", "chart.look", "chart.look_hint", "chart.yours", "chart.draw"),
+    "chart.pending",
     *("chart.log", "chart.remove_log"),
     *("plots.menu", "plots.menu_hint", "plot.phase", "plot.phase_name"),
 )

@@ -166,7 +166,7 @@ def test_finish_shows_own_curves_what_to_take_away_and_the_next_lesson(tab: Tab)
 
 
 def test_the_free_lab_is_unchanged(tab: Tab) -> None:
-    tab.page.get_by_role("button", name="Free lab").click()
+    tab.page.get_by_role("button", name="Leave the lesson").click()
     tab.page.get_by_role("heading", name="Your name, written twice").wait_for(state="detached")
     wait_for(lambda: tab.lab.lessons.lesson is None)
     usual = tab.simulation.entry.parameters()

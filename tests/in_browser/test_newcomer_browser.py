@@ -79,6 +79,7 @@ def test_no_gap_is_left_for_the_hidden_buttons_on_a_telephone(
     tab = Tab(server, context, draws=False)
     take(tab, 4)
     expect(tab.page.locator("#op-strip .transport")).to_be_hidden()
+    expect(tab.page.locator("#op-column .over .title")).to_be_in_viewport(ratio=1)
     gaps = """() => {
         const [strip, numbers] = ["#op-strip", "#op-strip .numbers"]
             .map(each => document.querySelector(each).getBoundingClientRect())

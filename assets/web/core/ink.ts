@@ -11,8 +11,9 @@ export type Tone = (typeof NAMES)[number]
 type Tones = Record<Tone, string>
 
 const LIGHTER = 0.6 // opacity of a link between strokes
-const redraws = new WeakMap<HTMLCanvasElement, () => void>() // what draws a canvas anew
+const sheets = new WeakMap<HTMLCanvasElement, Sheet>()
 let kept: Tones | null = null
+let larger = 1
 
 export function tones(): Tones {
     if (kept) return kept
@@ -24,39 +25,41 @@ export function tones(): Tones {
 /** Read the colours again, and draw everything again; for a page that changes its scheme by itself. */
 export function retone(): void {
     kept = null
-    for (const canvas of document.querySelectorAll("canvas")) redraws.get(canvas)?.()
+    for (const canvas of document.querySelectorAll("canvas")) sheets.get(canvas)?.changed()
 }
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", retone)
+
+/** Draw whatever has letters so many times as large. */
+export function enlarge(times: number): void {
+    if (times === larger) return
+    larger = times
+    for (const canvas of document.querySelectorAll("canvas")) sheets.get(canvas)?.measure()
+}
 
 /** A canvas that knows its size. */
 export class Sheet {
     readonly canvas = document.createElement("canvas")
     width = 0
     height = 0
-    private magnified = 1
     private box = { width: 0, height: 0 }
     // The browser then draws in memory: without a graphics card, the other points costs ten times as much.
     private readonly ink = this.canvas.getContext("2d", { willReadFrequently: true })
 
-    /** `changed`: everything is to be drawn anew. */
-    constructor(private readonly changed: () => void) {
+    /** `changed`: everything is to be drawn anew; `grows`: for a projector it is drawn larger, see `enlarge`. */
+    constructor(readonly changed: () => void, private readonly grows = false) {
         const observer = new ResizeObserver(entries => {
             this.box = entries[entries.length - 1]!.contentRect
             this.measure()
         })
         observer.observe(this.canvas)
-        redraws.set(this.canvas, changed)
+        sheets.set(this.canvas, this)
     }
 
     /** How much larger everything is drawn; `width` and `height` are what there is room for. */
-    get zoom(): number { return this.magnified }
-    set zoom(zoom: number) {
-        if (zoom === this.magnified) return
-        this.magnified = zoom
-        this.measure()
-    }
+    get zoom(): number { return this.grows ? larger : 1 }
 
-    private measure(): void {
+    /** Find out how much room there is. */
+    measure(): void {
         this.width = this.box.width / this.zoom
         this.height = this.box.height / this.zoom
         this.changed()

@@ -4,7 +4,7 @@
 import { made, tell } from "../core/dom"
 import { shown } from "../core/engine"
 import type { FormMessage } from "../core/form_data"
-import { retone } from "../core/ink"
+import { enlarge, retone } from "../core/ink"
 import { phrase, significant, written, type Texts } from "../core/words"
 import { ServerEngine } from "../channel/channel"
 import type { Command, PageMessage } from "../channel/messages"
@@ -19,6 +19,7 @@ import { keptLook } from "../parts/look"
 import { OverStage } from "../parts/over_stage"
 import { Plant } from "../parts/plant"
 import { ask } from "../parts/question"
+import { significantly } from "../parts/row"
 import { Strip } from "../parts/strip"
 import { Sketch } from "../parts/sketch"
 import { SymbolOverlay } from "../parts/symbol_overlay"
@@ -118,6 +119,7 @@ class Face {
         this.strip.follows(step)
         this.showForms()
         this.transport.subdued = this.column.leads
+        this.clock.hidden = this.column.leads && !this.column.playing // its instants are those of the run to come
     }
 
     /** Show the settings: those of the lab in the panel, those of a step in its card. */
@@ -225,8 +227,7 @@ class Face {
     /** Draw for a projector, or for a screen. */
     private enlarge(large: boolean): void {
         document.documentElement.classList.toggle("op-large", large)
-        this.strip.zoom = large ? LARGER : 1
-        for (const { sheet } of this.lenses) sheet.zoom = large ? LARGER : 1
+        enlarge(large ? LARGER : 1)
     }
 
     private frame(now: number): void {
@@ -242,7 +243,7 @@ class Face {
         if (now > this.read + NUMBERS) {
             this.read = now
             const { time, sides } = shown(engine), { running } = engine.state
-            sides.forEach((side, i) => tell(this.numbers[i]!, written(texts, 1e3 * side.distance, 1)))
+            sides.forEach((side, i) => tell(this.numbers[i]!, significantly(texts, 1e3 * side.distance, strip.chart.axes)))
             const clock = { time: written(texts, time, running ? 1 : 2), speed: significant(texts, engine.lab!.achieved, 2) }
             tell(this.clock, phrase(texts, running ? "readout.running" : "readout.paused", clock))
         }

@@ -71,7 +71,7 @@ export class Chart {
     private places: (number | undefined)[] = [] // times at which lines are named
 
     constructor(readonly texts: Texts, public axes: Axes, changed: () => void) {
-        this.sheet = new Sheet(changed)
+        this.sheet = new Sheet(changed, true)
         const { canvas } = this.sheet
         canvas.setAttribute("role", "img")
         this.plot = made("div", "plot", canvas)

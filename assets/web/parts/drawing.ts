@@ -42,10 +42,10 @@ export class Drawing {
     /** Put the sliders where the curve is. */
     show(): void {
         const { chart, points } = this
-        const { texts, axes } = chart
+        const { texts, axes, sheet: { zoom } } = chart
         points.forEach((point, i) => {
             const value = this.value(i)
-            point.style.transform = `translate(${chart.x(this.time(i)).toFixed(1)}px, ${chart.y(value).toFixed(1)}px)`
+            point.style.transform = `translate(${(zoom * chart.x(this.time(i))).toFixed(1)}px, ${(zoom * chart.y(value)).toFixed(1)}px)`
             const told = { min: String(axes.bottom), max: String(axes.top), now: String(value), text: `${significant(texts, value, 3)} ${axes.unit}` }
             for (const [name, each] of Object.entries(told)) point.setAttribute(`aria-value${name}`, each)
         })

@@ -5,7 +5,7 @@ import { draftOf, keepDraft } from "../core/drafts"
 import type { FormField, FormOption } from "../core/form_data"
 import { Scale, typedNumber } from "../core/scales"
 import { phrase, WARNS, written, type Texts } from "../core/words"
-import { icon } from "./icons"
+import { hasIcon, icon } from "./icons"
 import { PolePlane } from "./pole_plane"
 
 const RESTS = 300 // [ms] after the last touch for which the hand's value stays
@@ -125,6 +125,8 @@ export abstract class FieldRow {
         this.update()
     }
 
+    /** Where buttons that follow stand, if in this row: small, without words if they have a picture. */
+    readonly beside: HTMLElement | null = null
     /** Why what was typed is no value; empty if it is one. */
     protected refused = ""
     /** The elements that change the value. */
@@ -422,12 +424,13 @@ class ChoiceRow extends OptionRow {
 class PictureRow extends OptionRow {
     private readonly heading = made("span", "name")
     private readonly tiles = made("span", "tiles")
+    override readonly beside = made("span", "pictures", this.tiles)
     protected inputs: HTMLInputElement[] = []
 
     constructor(field: FormField, form: RowForm, signal: AbortSignal) {
         super(field, form, signal)
         this.tiles.setAttribute("role", "radiogroup")
-        this.fill(this.heading, this.tiles)
+        this.fill(this.heading, this.beside)
         this.goesBack(this.tiles)
         this.name()
     }
@@ -497,8 +500,11 @@ class ButtonRow extends FieldRow {
     protected name(): void {
         const { button, field } = this
         if (field.picture) button.replaceChildren(Object.assign(made("img", ""), { src: field.picture, alt: "" }), made("b", "", field.label), icon("right"))
-        else tell(button, field.label)
-        this.element.title = field.help ?? ""
+        else if (hasIcon(field.name)) {
+            button.replaceChildren(icon(field.name), made("span", "", field.label))
+            button.ariaLabel = field.label
+        } else tell(button, field.label)
+        this.element.title = button.ariaLabel ? [field.label, field.help].filter(Boolean).join(": ") : (field.help ?? "")
         for (const tone of ["main", "warning"]) button.classList.toggle(tone, field.tone === tone)
         button.classList.toggle("pictured", Boolean(field.picture))
         describe(button, field.help)

@@ -174,20 +174,26 @@ class GroupView {
         back.title = back.ariaLabel = phrase(form.host.texts, "form.back_group", { group: group.title })
         const rows = new Map<string, HTMLElement[]>(), buttons = new Map<HTMLElement, HTMLElement[]>()
         let run: HTMLElement | null = null // to which a further button belongs
+        let last: FieldRow | null = null // of the section
+        let at = ""
         for (const field of group.fields) {
-            const section = field.section ?? "", element = form.row(field.name)!.element
+            const section = field.section ?? "", row = form.row(field.name)!, { element } = row
+            if (section !== at) last = run = null
+            at = section
             element.classList.toggle("under", group.fields.some(each => field.needs?.flat().some(need => need.name === each.name)))
             const own = rows.get(section) ?? []
             rows.set(section, own)
             if (field.kind !== "button" || field.picture) {
                 own.push(element)
                 run = null
+                last = row
                 continue
             }
-            if (!run || own.at(-1) !== run) {
+            if (!run) {
                 run = runs.get(field.name) ?? made("div", "acts")
                 runs.set(field.name, run)
-                own.push(run)
+                if (last?.beside) last.beside.append(run)
+                else own.push(run)
             }
             buttons.set(run, [...(buttons.get(run) ?? []), element])
         }

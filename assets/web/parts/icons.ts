@@ -10,9 +10,17 @@ const LINES = {
     close: "M6 6l12 12M18 6 6 18",
     right: "M9 5l7 7-7 7",
     done: "M4.5 12.5l5 5L19.5 7",
+    draw: "M4 20l1-4L16.5 4.5l3 3L8 19zM14 7l3 3",
+    undo: "M9 14 4 9l5-5M4 9h10a6 6 0 0 1 0 12h-3",
+    redo: "M15 14l5-5-5-5M20 9H10a6 6 0 0 0 0 12h3",
 } as const
 
 export type Icon = keyof typeof LINES
+
+/** Whether something has a picture by its name. */
+export function hasIcon(name: string): name is Icon {
+    return name in LINES
+}
 
 export function icon(name: Icon): SVGSVGElement {
     return svg("svg", { viewBox: "0 0 24 24", class: "op-icon", "aria-hidden": "true" }, svg("path", { d: LINES[name] }))

@@ -14,6 +14,7 @@ const CLOSER = 0.45 // share of the radius below which the lens may go closer
 const HIGHER = 0.92 // of the radius, from the top to the middle of what is to be seen, which is above the bar
 const RIM = 5 // [px] between letters and the edge
 const HALF = 8 // [px], half the height of letters
+const CLOSEST = FACTORS[FACTORS.length - 1]!
 const [SMALL, TINY] = [55, 40] // [px], of a radius with no room for words, and none for a scale
 const PATIENCE = 900 // [ms] for which it could have gone closer before it does
 const GLIDE = 120 // [ms], time constant of a change of scale
@@ -35,14 +36,14 @@ export class Lens {
     private readonly distance = made("b", "distance")
     private readonly more = made("span", "")
     private stale = true
-    private factor = FACTORS[FACTORS.length - 1]!
+    private factor = CLOSEST
     private drawn = 0 // pixels for a metre, at present
     private could = 0 // [ms], since when it could go closer
     private last = 0
     private boxes: Box[] = [] // that letters do not cover
 
     constructor(private readonly texts: Texts, private readonly engine: Engine, private readonly side: number, ended?: AbortSignal) {
-        this.sheet = new Sheet(() => (this.stale = true))
+        this.sheet = new Sheet(() => (this.stale = true), true)
         this.sheet.canvas.setAttribute("role", "img")
         const tone = engine.texts[side]!.side
         this.element = made("div", `lens side${tone}`, this.sheet.canvas, made("p", "reading", this.distance, " ", this.more))
@@ -123,7 +124,7 @@ export class Lens {
         const { texts, factor, engine, side } = this
         const name = phrase(texts, "lens.name", { law: engine.texts[side]!.title })
         if (this.sheet.canvas.ariaLabel !== name) this.sheet.canvas.ariaLabel = name
-        tell(this.distance, `${written(texts, 1e3 * sample.distance, 1)} mm`)
+        tell(this.distance, `${written(texts, 1e3 * sample.distance, factor === CLOSEST ? 2 : 1)} mm`)
         const acts = sample.held ? "chart.held" : sample.pulled ? "chart.pulled" : ""
         tell(this.more, [acts && phrase(texts, acts), `×${written(texts, factor)}`].filter(Boolean).join(" · "))
     }

@@ -17,7 +17,7 @@ export class PhasePlane {
     private readonly ranges: [Range, Range]
 
     constructor(private readonly texts: Texts, private readonly engine: Engine, private readonly rows: readonly [RowData, RowData], changed: () => void) {
-        this.sheet = new Sheet(changed)
+        this.sheet = new Sheet(changed, true)
         const { canvas } = this.sheet
         Object.assign(canvas, { role: "img", ariaLabel: phrase(texts, "plot.phase_name") })
         this.element = made("div", "phase", canvas)

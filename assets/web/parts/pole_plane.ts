@@ -39,7 +39,7 @@ export function planeOf(poles: readonly Pole[], width: number, height: number): 
 }
 
 export class PolePlane {
-    readonly sheet = new Sheet(() => this.draw())
+    readonly sheet = new Sheet(() => this.draw(), true)
     readonly element: HTMLElement
     private poles: Pole[] = []
     private shown = ""

@@ -165,6 +165,7 @@ export class Comparison {
         this.again.hidden = true
         if (data.kind === "sketch") {
             const chart = (this.chart = chartOf(page, prediction, data, () => chart.draw()))
+            if (!given(this.answer ?? {})) chart.hint = phrase(page, "chart.pending")
             drawn(chart, data, this.answer, undefined)
             this.elements.push(chart.element, this.again)
         } else {
@@ -196,7 +197,9 @@ export class Comparison {
     draw(truth: Curves | undefined): void {
         this.again.hidden = truth !== undefined
         const { chart, prediction } = this
-        if (chart && prediction.data.kind === "sketch") drawn(chart, prediction.data, this.answer, truth)
+        if (!chart || prediction.data.kind !== "sketch") return
+        chart.hint = ""
+        drawn(chart, prediction.data, this.answer, truth)
     }
 
     private get answer(): Answer | undefined {

@@ -53,8 +53,9 @@ export class Row {
         chart.axes = { ...chart.axes, ...range }
     }
 
-    /** The values now, beside the title. */
-    tell(sample: Sample, now: number): void {
+    /** The values now, beside the title; none if they stand elsewhere. */
+    tell(sample: Sample, now: number, stands: boolean): void {
+        if (stands) return void (this.chart.readings = [])
         if (now < this.read + READ) return
         this.read = now
         const { engine, texts, data: { lines, scale }, chart } = this
@@ -111,7 +112,7 @@ export class Row {
 }
 
 /** A number with as many decimals as its axis can tell apart. */
-function significantly(texts: Texts, value: number, { bottom, top }: { bottom: number; top: number }): string {
+export function significantly(texts: Texts, value: number, { bottom, top }: { bottom: number; top: number }): string {
     const decimals = Math.min(4, Math.max(0, 2 - Math.floor(Math.log10(top - bottom))))
     return written(texts, value, decimals)
 }

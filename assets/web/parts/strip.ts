@@ -20,6 +20,8 @@ const STEPS: Record<string, number> = { ArrowLeft: -0.1, ArrowDown: -0.1, ArrowR
 const DISTANCE = "distance" // the first row, which is always there
 const PHASE = "phase" // the plane, which stands beside the rows
 const PLANE = ["across", "across_rate"] // rows that are its axes
+/** Windows in which several rows take the room of the large numbers, which say the distance elsewhere; see lab.css. */
+const CROWDED = matchMedia("(max-width: 36em), (max-aspect-ratio: 4/5) and (max-height: 56em), (max-height: 34em)")
 
 export class Strip {
     readonly element: HTMLElement
@@ -32,7 +34,6 @@ export class Strip {
     private chosen: readonly string[]
     private inStep: readonly string[] | null = null // rows of a lesson's step
     private offered = "" // of the rows that there can be
-    private large = 1
     private stale = true
     private spoken = -Infinity
     private first = 0 // of the axis, while one looks back
@@ -67,12 +68,6 @@ export class Strip {
 
     /** The chart of the distance. */
     get chart(): Chart { return this.rows[0]!.chart }
-
-    set zoom(zoom: number) {
-        this.large = zoom
-        for (const { chart } of this.rows) chart.sheet.zoom = zoom
-        if (this.phase) this.phase.sheet.zoom = zoom
-    }
 
     /** Show the plots of a lesson's step besides the distance, with what its tasks want; or the user's own. */
     follows(step: StepData | undefined): void {
@@ -140,7 +135,6 @@ export class Strip {
         root.classList.toggle("op-rows", this.rows.length > 1 || this.phase !== null)
         const menu = (name: string) => rows.find(row => row.name === name)?.menu ?? phrase(texts, "plot.phase")
         this.menu.show(possible.filter(name => name !== DISTANCE).map(name => ({ name, menu: menu(name), on: names.includes(name) })))
-        this.zoom = this.large
         engine.plot([...new Set([...this.rows.flatMap(row => row.fields), ...(this.phase ? plane.flatMap(row => row.lines[0]!.field) : [])])])
         this.mark()
         this.forgets = this.stale = true
@@ -161,11 +155,12 @@ export class Strip {
         else if (past < this.first || past > this.first + SECONDS) this.first = Math.max(0, past - SECONDS / 2)
         this.record()
         const spans = spansOf(times, kinds), sample = shown(engine)
+        const isSaid = (name: string) => name === DISTANCE && !(this.rows.length > 1 && CROWDED.matches)
         for (const row of this.rows) {
             const { chart, data } = row
             Object.assign(chart, { from: this.first, until: this.first + SECONDS, at: sample.time, spans, limits: limits[data.name] ?? [] })
             row.follow(times)
-            row.tell(sample, now)
+            row.tell(sample, now, isSaid(data.name))
         }
     }
 

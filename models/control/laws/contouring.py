@@ -175,7 +175,7 @@ LAW = Law(
     good="It is on time and yields along the curve while it is stiff across it, as long as its"
     " error is small.",
     limits="Its axes are those of its reference point, meant for errors that are small against the"
-    " radius of curvature: held back, it is off its curve at once, and a brake that other laws"
+    " radius of curvature: held back, it is off its curve at once, and a hold that other laws"
     " stand may stop it in a quarter of a second.",
     objection="Its authors would keep its error small, by a slower clock or a stiffer machine, and"
     " choose the ratio for the machine.",

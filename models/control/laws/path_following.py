@@ -185,7 +185,7 @@ LAW = Law(
     linear=True,
     good="Held back and let go, it stays on the curve and goes on at the wanted speed without"
     " haste; with K5 = 0 it is a guiding virtual fixture: a hand alone moves the robot along.",
-    limits="Time that is lost stays lost: after the brake it is late by as long as it was held.",
+    limits="Time that is lost stays lost: let go, it is late by as long as it was held.",
     objection="Its authors bound neither the integral nor the distance from which (16)"
     " leads back, as is done here.",
 )

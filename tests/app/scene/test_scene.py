@@ -28,7 +28,7 @@ from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.scene import meshes
 from onpath.app.scene.mouse import SceneCallbacks
 from onpath.app.scene.poses import trace_segments
-from onpath.app.scene.robot_nodes import FORCE, TRACE_SEGMENTS
+from onpath.app.scene.robot_nodes import FORCE, TRACE_SEGMENTS, part_looks
 from onpath.app.scene.scene import Scene
 from onpath.app.scene.stage import FIELD_OF_VIEW, Pose, Stage, view_of
 from onpath.app.scene.stage_catalogue import stage_of
@@ -362,6 +362,21 @@ def in_picture(pose: Pose, points: np.ndarray, size: tuple[int, int]) -> tuple[n
     seen = points - pose.position
     x = size[0] / 2 + scale * (seen @ right) / (seen @ forward)
     return x, size[1] / 2 - scale * (seen @ up) / (seen @ forward)
+
+
+@pytest.mark.parametrize("law", DEFAULT_LAWS.values())
+def test_ring_and_dot_can_be_told_apart_on_a_telephone(law: str) -> None:
+    """The smaller of the two discs has a radius of 3 px or more, and a rim of 1.5 px."""
+    size, stage = (390, 211), RIGID  # beside a lesson
+    pose = view_of(stage, size, 21.0)
+    away = float(np.linalg.norm(pose.look_at - pose.position))
+    metre = size[1] / (2 * away * np.tan(FIELD_OF_VIEW / 2))  # [px]
+    scales, _ = part_looks(RIGHT, law, robot(1.5, 3.0).counts, is_narrow=True)
+    bearing = meshes.part("bearing").vertices[:, 0].max()
+    usual, _ = part_looks(RIGHT, law, robot(1.5, 3.0).counts)
+    wider = [i for i, scale in enumerate(scales) if scale != usual[i]]
+    outer, inner = (scales[i][0] * bearing * metre for i in wider)
+    assert inner > 3.0 and outer - inner > 1.5
 
 
 def test_layers_keep_links_apart():

@@ -113,7 +113,7 @@ def test_what_students_did_5_s_before_a_kill_is_in_the_class_which_is_back_withi
         asked = asked_on(wall)
         ada.tell({"do": "Predict", "option": 0})
         until(lambda: ANSWERED in teacher.values.get("class.answers", ""))
-        ada.press("Free lab")
+        ada.press("Leave the lesson")
         until(lambda: not ada.sees(f"Step {CHOICE + 1} of"))
         lose_the_process(klass, ada, LOST + SETTLED)  # by then the step is known to be given her
         with wall_of(klass) as again:  # as its page does by itself

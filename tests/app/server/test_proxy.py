@@ -79,7 +79,7 @@ def test_a_student_whose_process_is_killed_goes_on_with_the_other(running: Runni
         assert running.site.serving() is not killed and student.code == code
         student.read(lambda: student.has_button("Next"))
         assert not student.has_button("Commit") and not student.has_button("Skip")  # predicted
-        student.press("Free lab")
+        student.press("Leave the lesson")
         student.read(lambda: not student.sees("Step 2 of"))
         student.read(
             lambda: student.values.get("path") == "clover" and student.values["K2"] == 44.0

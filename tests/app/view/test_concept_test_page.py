@@ -49,7 +49,7 @@ def test_both_tests_are_in_the_overview_and_open_from_it(
     server: LabServer, student: Student
 ) -> None:
     lab = wait_for(lambda: server.registry.find(student.code)).scheduled.lab
-    first, *_, last = student.ask("lessons")["lessons"]
+    *_, first, last = student.ask("lessons")["lessons"]
     for card, name, key in ((first, BEFORE, "before"), (last, AFTER, "after")):
         assert card["title"] == ENGLISH(f"test.title_{key}", title=TEST.front.title)
         student.tell({"do": "OpenLesson", "name": card["name"]})

@@ -24,6 +24,7 @@ from onpath.app.view.lessons import lesson_sheet
 from onpath.app.view.robots import robot_sheet
 from onpath.app.view.sheets import SheetContext, sheet_of
 from onpath.assets.messages import languages
+from onpath.lessons.concept_test.concept_test import AFTER, BEFORE
 from onpath.lessons.progress import Notes, Progress
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.control.laws.expressions import FUNCTIONS
@@ -112,6 +113,11 @@ def test_a_lesson_is_finished_when_its_steps_are_seen_and_its_tasks_passed() -> 
     assert begun.done < all_seen.done < 1 and not all_seen.finished
     done = card({name: notes_with(seen=len(lesson.steps), tasks=tasks)})
     assert done.done == 1 and done.finished
+
+
+def test_the_first_lesson_is_the_first_card() -> None:
+    cards = lesson_sheet(LessonState(COURSE, Progress(), ENGLISH)).lessons
+    assert [card.name for card in cards] == [*COURSE.lessons, BEFORE, AFTER]
 
 
 @pytest.mark.parametrize("words", [Words(language) for language in languages()])

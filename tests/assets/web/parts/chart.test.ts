@@ -1,9 +1,11 @@
 import { inkOf, resize, TEXTS } from "../page"
 import assert from "node:assert/strict"
 import { test } from "node:test"
+import { enlarge, Sheet } from "../../../../assets/web/core/ink"
 import { niceStep } from "../../../../assets/web/core/numbers"
 import { Chart } from "../../../../assets/web/parts/chart"
 import { firstAfter, valueAt } from "../../../../assets/web/parts/curves"
+import { Drawing } from "../../../../assets/web/parts/drawing"
 import { chance } from "../random"
 
 function random(seed: number, count: number): { times: number[]; values: number[] } {
@@ -91,4 +93,28 @@ test("lines are drawn within the axes, and each is named once at most, by itself
 
 test("a chart that cannot be seen draws nothing", () => {
     assert.deepEqual(drawn(1, 0, 0).texts, [])
+})
+
+test("what has letters is drawn larger for a projector, and is drawn on where one points; a picture is not", () => {
+    const { chart } = drawn(3), picture = new Sheet(() => {}), draw = chance(9)
+    new Drawing(chart, () => {})
+    document.body.append(chart.element, picture.canvas)
+    resize(picture.canvas, 600, 200)
+    for (const times of [1.7, 1, 2]) {
+        enlarge(times)
+        assert.ok(Math.abs(times * chart.sheet.width - 600) < 1e-9 && Math.abs(times * chart.sheet.height - 200) < 1e-9)
+        assert.equal(picture.width, 600)
+        for (let k = 0; k < 20; k++) {
+            const [time, value] = [10 * draw(), 120 * draw() - 60]
+            const at = { button: 0, pointerId: 1, clientX: times * chart.x(time), clientY: times * chart.y(value), bubbles: true }
+            chart.plot.setPointerCapture = () => {}
+            chart.plot.dispatchEvent(new PointerEvent("pointerdown", at))
+            assert.ok(Math.abs(chart.ghost!.times[0]! - time) < 2e-3 && Math.abs(chart.ghost!.values[0]! - value) < 2e-3)
+            chart.plot.dispatchEvent(new PointerEvent("pointerup", at))
+            const points = [...chart.plot.querySelectorAll<HTMLElement>(".point")]
+            const places = points.map(point => Number(/translate\((.*?)px/.exec(point.style.transform)![1]))
+            places.forEach((x, i) => assert.ok(Math.abs(x - times * chart.x((10 * i) / (places.length - 1))) < 0.1))
+        }
+    }
+    enlarge(1)
 })

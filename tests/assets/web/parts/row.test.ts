@@ -15,7 +15,7 @@ function legend(torques: number[][], width: number): { text: string; x: number }
     const row = new Row(TEXTS, engine, DATA, () => {}), sample = { time: 0, sides: [] } as unknown as Sample
     row.add(sample)
     row.follow([0])
-    row.tell(sample, 0)
+    row.tell(sample, 0, false)
     resize(row.chart.sheet.canvas, width, 140)
     row.chart.draw()
     const { texts } = inkOf(row.chart.sheet.canvas)
