@@ -225,7 +225,7 @@ def test_at_four_places_a_push_along_the_path_gives_nothing_across() -> None:
     signs = np.sign(nudge)
     places = degrees[np.flatnonzero(signs != np.roll(signs, 1))]
     texts = said(
-        LESSON, "(eigenvectors of that matrix, the *principal directions*): near #°, #°, #° and #°."
+        LESSON, "(the axes of the ellipse, the *principal directions*): near #°, #°, #° and #°."
     )
     assert len(places) == 4
     assert np.abs(places - [value(text) for text in texts]).max() < 1

@@ -67,7 +67,7 @@ def test_the_numbers_of_one_mode() -> None:
     beam = beam_modes(1, LINKS.beam)
     turned, shifted = float(coefficients(1)[0]), float(beam.tip[0] * beam.area[0])
     assert_stated(said(LESSON, "and $c = #$ follows from"), [turned])
-    assert_stated(said(LESSON, "a base that is *shifted* would give #)"), [shifted])
+    assert_stated(said(LESSON, "(If that end were *shifted*, $c$ would be #.)"), [shifted])
     assert_stated(said(LESSON, "$(1-c)\\,a = #\\,a$"), [1 - turned])
     assert_stated(said(LESSON, "$1 - \\alpha c = 0$: $\\alpha = 1/c = #$."), [1 / turned])
     texts = said(LESSON, "their sum tends to 1: it is #, #, #, # with one to four modes.")

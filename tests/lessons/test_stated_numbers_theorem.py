@@ -31,13 +31,18 @@ def test_when_the_hand_lets_go_the_pen_is_on_the_other_strand() -> None:
     assert motion.place[-1] > motion.place[motion.during(2.4, 2.41)][0] + 2.0
 
 
-def test_the_nose_looks_backwards_after_some_laps() -> None:
-    run = onpath.simulate("hovercraft", "circle", duration=16.0, pen="behind", drag=0.5)
-    tip = hovercraft("behind").endpoint(run.q)
-    travel = np.diff(tip, axis=0)[-1]
+@pytest.mark.parametrize(
+    ("pen", "sentence"),
+    [("front", "the nose points #° further inwards"), ("behind", "the nose pointed #° away")],
+)
+def test_where_the_nose_points_after_some_laps(pen: str, sentence: str) -> None:
+    run = onpath.simulate("hovercraft", "circle", duration=16.0, pen=pen, drag=0.5)
+    travel = np.diff(hovercraft(pen).endpoint(run.q), axis=0)[-1]
     nose = np.array([math.cos(run.q[-1, 2]), math.sin(run.q[-1, 2])])
-    angle = math.degrees(math.acos(travel @ nose / np.linalg.norm(travel)))
-    assert_stated(said(LESSON, "the nose pointed #° away"), [angle])
+    angle = math.acos(travel @ nose / np.linalg.norm(travel))
+    assert_stated(said(LESSON, sentence), [math.degrees(angle)])
+    inwards = np.array([-travel[1], travel[0]]) @ nose
+    assert (inwards > 0) == (pen == "front")
 
 
 def test_the_frequency_of_the_nose_and_its_known_mistakes() -> None:
