@@ -72,7 +72,7 @@ class Page:
         self._page = ""
         self._socket: ClientConnection | None = None
         self._dead: ClientConnection | None = None  # of a cable that was pulled
-        self._task: asyncio.Task[None] | None = None
+        self._tasks = list[asyncio.Task[None]]()
         self._number = 0
 
     def load(self) -> None:
@@ -84,14 +84,14 @@ class Page:
         """Be connected from now on, as the page that it was."""
         if self._dead is not None:
             self._dead.transport.abort()
-        self._task = asyncio.create_task(self._stay())
+        self._tasks = [asyncio.create_task(each) for each in (self._stay(), self._draw())]
 
     async def pull(self, *, silently: bool = False) -> None:
         """Be cut off; silently as by a cable: nobody is told."""
-        assert self._task is not None
-        self._task.cancel()
-        with suppress(asyncio.CancelledError):
-            await self._task
+        for task in self._tasks:
+            task.cancel()
+            with suppress(asyncio.CancelledError):
+                await task
         self._dead, self._socket = self._socket, None
         if self._dead is not None and not silently:
             self._dead.transport.abort()
@@ -113,6 +113,15 @@ class Page:
             self._socket, self.since = None, 0.0
             await asyncio.sleep(AGAIN)
 
+    async def _draw(self) -> None:
+        """Say that it is drawn, whether or not it is told anything."""
+        while True:
+            await self._awake.wait()
+            if (socket := self._socket) is not None:
+                with suppress(WebSocketException):
+                    await socket.send(SEEN)
+            await asyncio.sleep(SEES)
+
     async def _serve(self) -> None:
         way = {"host": "127.0.0.1", "port": self._through} if self._through else {}
         self._socket = socket = await connect(
@@ -127,12 +136,9 @@ class Page:
         )
         self.told.clear()
         self.seen.clear()
-        self.moved, saw = 0.0, 0.0
+        self.moved = 0.0
         await socket.send(hello(self._page, labs=self.code, teacher=self.teacher))
         async for raw in socket:
-            if monotonic() > saw + SEES:
-                saw = monotonic()
-                await socket.send(SEEN)
             await self._awake.wait()
             await self._take(json.loads(raw))
 
