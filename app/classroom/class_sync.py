@@ -1,7 +1,7 @@
 """Synchronizes the class with the labs of this process: progress and the teacher's orders.
 
-It runs several times a second in a separate thread. This is safe because labs are changed only by
-commands and only their immutable parts are read.
+It runs several times a second, and at once after an order, in a separate thread. This is safe
+because labs are changed only by commands and only their immutable parts are read.
 """
 
 from __future__ import annotations
@@ -38,6 +38,7 @@ class ClassSync:
         self._asked: dict[str, int] = {}
         self._bound: dict[str, Lab] = {}
         self.rounds = Periodic("class", SYNC_INTERVAL, self.check)
+        classroom.ordered = self.rounds.due.set
 
     def check(self) -> None:
         """Synchronize once: send orders to the labs and report their state to the class."""

@@ -164,6 +164,7 @@ class Classroom:
         code: the class code, the same in every process with this key; it is in the class's address.
         state: everything that is stored; replaced at each change.
         claims: labs of students who say that a place is theirs whose lab is away -> that lab.
+        ordered: called when labs are to follow an order at once.
     """
 
     clock: Callable[[], float] = time.monotonic
@@ -173,6 +174,7 @@ class Classroom:
     code: str = field(init=False)
     state: ClassState = field(default_factory=ClassState)
     claims: dict[str, str] = field(default_factory=dict[str, str], init=False)
+    ordered: Callable[[], object] = field(default=lambda: None, init=False)
     _asking: dict[int, Asking] = field(default_factory=dict[int, Asking], init=False)
     _lock: threading.RLock = field(default_factory=threading.RLock)
     _door: Admission = field(init=False)
@@ -399,6 +401,7 @@ class Classroom:
         """Stop or resume all labs."""
         with self._lock:
             self.state = replace(self.state, orders=replace(self.orders, frozen=on))
+        self.ordered()
 
     def push(self, push: Push | None, asks: Iterable[str] = ()) -> None:
         """Send a set-up or a step to all members once, and to those who join later.
@@ -421,6 +424,7 @@ class Classroom:
                 pace = None
             new = replace(self.orders, pushes=count, push=push, pace=pace)
             self.state = replace(self.state, orders=new)
+        self.ordered()
 
     def _ask(self, step: TakeStep, items: Iterable[str]) -> None:
         """Open the votes on items of a step; one that was closed stays so, and is only asked again

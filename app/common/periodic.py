@@ -18,11 +18,12 @@ class Periodic:
 
     Attributes:
         awake: while it is not set, no call is made.
+        due: set it to end the pause before the next call.
     """
 
     def __init__(self, name: str, every: float, act: Callable[[], object]) -> None:
         self._every, self._act = every, act
-        self._stop, self.awake = threading.Event(), threading.Event()
+        self._stop, self.awake, self.due = (threading.Event() for _ in range(3))
         self.awake.set()
         self._thread = threading.Thread(target=self._run, name=name, daemon=True)
 
@@ -34,11 +35,16 @@ class Periodic:
         """Stop the thread, and wait up to `patience` [s] for a call in progress."""
         self._stop.set()
         self.awake.set()
+        self.due.set()
         if self._thread.is_alive():
             self._thread.join(patience)
 
     def _run(self) -> None:
-        while self.awake.wait() and not self._stop.wait(self._every):
+        while self.awake.wait():
+            self.due.wait(self._every)
+            self.due.clear()
+            if self._stop.is_set():
+                return
             try:
                 self._act()
             except Exception as error:

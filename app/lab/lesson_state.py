@@ -189,13 +189,15 @@ class LessonState:
 
     def set_pace(self, pace: Pace | None) -> None:
         """Restrict the student to some steps; None lifts the restriction."""
-        self.pace = pace
-        self.version += 1
+        if pace != self.pace:
+            self.pace = pace
+            self.version += 1
 
     def set_votes(self, votes: tuple[Vote, ...]) -> None:
         """The class is asked something else now, or nothing."""
-        self.votes = votes
-        self.version += 1
+        if votes != self.votes:
+            self.votes = votes
+            self.version += 1
 
     def is_voted_on(self, item: str, lesson: str = "") -> bool:
         """Whether the class is asked a question now, by default one of the open lesson."""

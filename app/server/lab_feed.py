@@ -64,10 +64,8 @@ class LabFeed(LabDisplay):
     @property
     @override
     def is_outdated(self) -> bool:
-        scene, lab = self._ready, self._lab
-        if scene is not None and scene.is_outdated:
-            return True
-        return lab is not None and self._data.waits(lab)
+        scene = self._ready
+        return scene is not None and scene.is_outdated
 
     @override
     def is_turn(self, lab: Lab, frame: int, stride: float) -> bool:

@@ -11,7 +11,7 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from msgspec import Struct
+from msgspec import Struct, structs
 
 from onpath.app.channel.class_messages import Lead
 from onpath.app.channel.data_frame import LENGTH, FrameSource, frame_message, path_message
@@ -42,6 +42,7 @@ from onpath.app.common.work_thread import WorkThread
 from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.snapshot import Motion, PathSnapshot
+from onpath.app.lab.snapshots.take_snapshot import take_lesson
 from onpath.app.scene.client_scene import ClientScene
 from onpath.app.server.first_view import FirstView
 from onpath.app.server.page_class import PageClass, is_of_class
@@ -116,14 +117,6 @@ class PageData:
         if self._taught is not None:
             self._taught.close()
 
-    def waits(self, lab: Lab) -> bool:
-        """Whether the page waits to be told of another step of a lesson."""
-        stream, column = self._stream, self._text.column
-        if column is None or not stream.is_open or stream.is_busy or stream.opened != self._opened:
-            return False
-        is_made = bool(column.message) and column.message is not self._lesson
-        return is_made or column.version != lab.lessons.version
-
     def follow(
         self,
         lab: Lab,
@@ -131,7 +124,7 @@ class PageData:
         is_turn: bool,
         on_resize: Callable[[], None],
     ) -> None:
-        """Note the present sample, and hand over a frame if it is its turn.
+        """Note the present sample, and hand over a frame if it is its turn, or if a step has come.
 
         Args:
             drawn: how the robots are drawn now.
@@ -158,23 +151,29 @@ class PageData:
             on_resize()
         self._source.note(lab.simulation)
         self._files.serve(lab)
-        if not is_turn or stream.is_busy:
+        self._make_lesson(lab)
+        if stream.is_busy or not (is_turn or self._has_step):
             return
-        messages = list[Message]()
-        robot, path = lab.simulation.robot, drawn.path
+        if messages := self._of_frame(lab, drawn):
+            self._told = time.monotonic()
+            stream.hand_over(*messages)
+
+    def _of_frame(self, lab: Lab, drawn: Motion | PageSnapshot) -> list[Message]:
+        """What the page is told in its turn."""
+        robot, path, messages = lab.simulation.robot, drawn.path, list[Message]()
         if path is not self._path or robot is not self._robot:
             self._path, self._robot = path, robot
             messages.append(_text_of(path_message, robot, path))
         if (frame := self._source.take(lab)) is not None:
             messages.append(_text_of(frame_message, frame))
+        if self._language:
+            messages += [*self._of_lesson(), *self._of_answers(lab)]
         if self._symbol:
             messages += self._light(robot, drawn)
         messages += [partial(encoded, each) for each in self._files.take()]
         if not messages and time.monotonic() > self._told + BEAT:
             messages.append(_text_of(Alive))
-        if messages:
-            self._told = time.monotonic()
-            stream.hand_over(*messages)
+        return messages
 
     def tell(self, snapshot: PageSnapshot, scene: ClientScene | None, robot: Robot) -> None:
         """Hand over what has changed of the texts, of the state and of what the lessons show.
@@ -242,6 +241,30 @@ class PageData:
         if self._taught is not None:
             news += self._taught.news()
         return [partial(encoded, each) for each in news]
+
+    @property
+    def _has_step(self) -> bool:
+        """Whether the page waits for the message of a step that is made."""
+        column = self._text.column
+        if column is None or not column.message or not self._language:
+            return False
+        return column.message is not self._lesson
+
+    def _make_lesson(self, lab: Lab) -> None:
+        """Have the message of the open step made if it has changed."""
+        text, robot = self._text, lab.simulation.robot
+        presenting = lab.simulation.settings.presenting
+        column = text.column if text.words.language == lab.words.language else None
+        if column is not None and column.lacks(lab.lessons.version, robot, presenting):
+            column.make(take_lesson(lab), robot)
+
+    def _of_answers(self, lab: Lab) -> list[Message]:
+        """Which answers have been stored since the page was told last."""
+        sent, state = list(lab.lessons.sent), self._state
+        if state is None or sent == state.sent:
+            return []
+        self._state = structs.replace(state, sent=sent)
+        return [partial(encoded_changes, StateMessage, {"sent": sent})]
 
     def _of_lesson(self) -> list[Message]:
         column, messages = self._text.column, list[Message]()

@@ -72,7 +72,7 @@ class PageText:
             self.first_minute.follow(snapshot)
         self.narration.follow(snapshot)
         if self.column is not None:
-            self.column.follow(snapshot)
+            self.column.measure(snapshot.lesson)
 
     def state(self, snapshot: PageSnapshot, seen: Projection, scene: int) -> StateMessage:
         """The message of the lab's state.

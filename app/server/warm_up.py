@@ -1,6 +1,8 @@
 """Reads, compiles and imports in the background, after the first picture.
 
-Anything that is needed earlier is read or imported where it is needed.
+Anything that is needed earlier is read or imported where it is needed. All of it takes seconds, in
+which a class that comes back after a restart would wait for its votes: it is done piece by piece,
+while the frames of the simulation are on time, with rests.
 """
 
 from __future__ import annotations
@@ -19,6 +21,7 @@ from threading import Thread
 import numpy as np
 
 from onpath.app.common.error_log import log_warning
+from onpath.app.common.on_time import wait_until_on_time
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.simulation import Simulation
@@ -37,36 +40,36 @@ LATER = (
 )
 REST = 3.0  # [s] left to the first browser to open its lab
 TRIES = 5
+SHARE = 0.8  # of the time that is left to others
 
 
 def warm_up(loop_cache: LoopCache, course: Course, rest: float = REST) -> Thread:
     """After `rest` [s], in a thread: read lessons, compile loops, import modules, build robots.
 
-    A part that fails, for instance because too many files are open, is tried again after a rest.
+    A part that fails, for instance because too many files are open, is tried again after a rest. So
+    long, each part waits for late frames, and then leaves others `SHARE` of the time.
     """
-
-    def read_lessons() -> None:
-        for versions in (*course.lessons.values(), *course.tests.values()):
-            list(versions.values())
 
     def make_loops() -> None:
         Simulation(loop_cache).prepare_loops()
 
-    def import_modules() -> None:
-        for name in LATER:
-            import_module(name)
+    def import_rest() -> None:
         _import_picture_formats()
         for language in languages():
             Words(language)("full.text", places=2)  # a plural, whose rules are imported with it
         mimetypes.init()  # the types of files, for downloads
 
     def work() -> None:
-        parts = [read_lessons, make_loops, import_modules, partial(build_robots, loop_cache)]
+        read = (*course.lessons.values(), *course.tests.values())
+        parts: list[Callable[[], object]] = [make_loops]
+        parts += [partial(versions.get, language) for versions in read for language in versions]
+        parts += [*(partial(import_module, name) for name in LATER), import_rest]
+        parts += [partial(build_robot, loop_cache, entry) for entry in tuple(ROBOTS.values())]
         tries = TRIES
         while parts and tries:
             time.sleep(rest)
             tries -= 1
-            parts = [part for part in parts if not _succeeds(part)]
+            parts = [part for part in parts if not _succeeds(part, rest)]
         gc.freeze()  # else each full collection scans all of this again and stops every thread
 
     thread = Thread(target=work, name="warm-up", daemon=True)
@@ -76,14 +79,19 @@ def warm_up(loop_cache: LoopCache, course: Course, rest: float = REST) -> Thread
 
 def build_robots(loop_cache: LoopCache) -> None:
     """Build the equations, checks and drawings of all robots, before somebody chooses one."""
-    home = np.zeros((1, 2))
     for entry in tuple(ROBOTS.values()):
-        lab = Lab(loop_cache, entry)
-        take_page_snapshot(lab, 1.0)
-        robot = lab.simulation.robot
-        robot.margin(home)
-        q = robot.rest(robot.frame.lift(home))
-        robot.fault(q, np.zeros_like(q), lab.simulation.parameters)
+        build_robot(loop_cache, entry)
+
+
+def build_robot(loop_cache: LoopCache, entry: RobotEntry) -> None:
+    """Build the equations, checks and drawings of a robot."""
+    home = np.zeros((1, 2))
+    lab = Lab(loop_cache, entry)
+    take_page_snapshot(lab, 1.0)
+    robot = lab.simulation.robot
+    robot.margin(home)
+    q = robot.rest(robot.frame.lift(home))
+    robot.fault(q, np.zeros_like(q), lab.simulation.parameters)
 
 
 def compile_loops(loop_cache: LoopCache, entry: RobotEntry) -> None:
@@ -98,12 +106,17 @@ def compile_loops(loop_cache: LoopCache, entry: RobotEntry) -> None:
         loop_cache.make(robot, kind)
 
 
-def _succeeds(part: Callable[[], None]) -> bool:
+def _succeeds(part: Callable[[], object], patience: float) -> bool:
+    wait_until_on_time(patience)
+    begun = time.monotonic()
     try:
         part()
     except Exception as error:  # the first user of this part will wait for it
         log_warning("not prepared yet: %r", error)
         return False
+    finally:
+        if patience:
+            time.sleep(SHARE / (1 - SHARE) * (time.monotonic() - begun))
     return True
 
 

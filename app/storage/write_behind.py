@@ -15,7 +15,7 @@ from onpath.app.storage.records import HeldElsewhere, NotKept, NotStorable
 log = logging.getLogger(__name__)
 
 INTERVAL = 2.0  # [s] between writes: the most that is lost if the process is killed
-BREATH = 0.01  # [s] between labs, in which the simulation thread can run
+BREATH = 0.01  # [s] after a lab for which nobody waits, in which the simulation thread can run
 FLUSH = 10.0  # [s] to wait for the last write
 TURN_WAIT = 2.0  # [s] to wait for a write in progress; a user may be waiting, too
 HANGING = 5.0  # [s] after which a write in progress counts as failed
@@ -166,13 +166,14 @@ class WriteBehind:
     def _write_all(self) -> bool:
         """Write the pending states; return whether there were any."""
         with self._lock:
-            codes = sorted(self._pending, key=lambda code: code not in self._hurried)
-            self._hurried.clear()
+            hurried, self._hurried = self._hurried, set[str]()
+            codes = sorted(self._pending, key=lambda code: code not in hurried)
         failed = ""
         for code in codes:
             with self._writing:
                 failed = self._write_waiting(code) or failed
-            self._closing.wait(BREATH)
+            if code not in hurried:
+                self._closing.wait(BREATH)
         if failed:
             self._wanted.set()
         if codes and failed != self.warning:

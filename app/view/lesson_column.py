@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from onpath.app.channel.messages import encoded
 from onpath.app.common.background import Submit
-from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
+from onpath.app.lab.snapshots.page_snapshot import LessonSnapshot
 from onpath.app.view.lesson_message import lesson_message, measured
 from onpath.app.view.lesson_view import LessonView
 from onpath.lessons.course import Course
@@ -33,21 +33,25 @@ class LessonColumn:
         self.message = self.measured = b""
         self._turn = 0
 
-    @property
-    def version(self) -> int:
-        """Version of the lessons that the last message tells of; see `LessonSnapshot`."""
-        return self._made_for[0]
+    def lacks(self, version: int, robot: Robot, presenting: bool) -> bool:
+        """Whether no message is being made for these; see `LessonSnapshot`."""
+        return self._made_for != (version, robot.name, presenting)
 
-    def follow(self, snapshot: PageSnapshot) -> None:
-        """Make the messages that have changed."""
-        run = LessonView(self._course, self._words, snapshot.lesson, self._student)
-        made_for = run.version, snapshot.key.robot, snapshot.lesson.presenting
-        if made_for != self._made_for:
-            self._made_for = made_for
-            self._submit(lambda: self._tell(run, robot_of(snapshot)))
+    def make(self, shown: LessonSnapshot, robot: Robot) -> None:
+        """Make the message of the open step."""
+        self._made_for = shown.version, robot.name, shown.presenting
+        run = self._view(shown)
+        self._submit(lambda: self._tell(run, robot))
+
+    def measure(self, shown: LessonSnapshot) -> None:
+        """Make the message of what is measured."""
+        run = self._view(shown)
         self._turn += 1
         if run.lesson is not None and not (run.playing and self._turn % EVERY):
             self.measured = encoded(measured(run))
+
+    def _view(self, shown: LessonSnapshot) -> LessonView:
+        return LessonView(self._course, self._words, shown, self._student)
 
     def _tell(self, run: LessonView, robot: Robot) -> None:
         self.message = encoded(lesson_message(run, robot))

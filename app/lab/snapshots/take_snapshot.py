@@ -104,7 +104,7 @@ def take_page_snapshot(
             laws=simulation.chosen_laws,
         ),
         edit=_path_edit(simulation),
-        lesson=_lesson(lab),
+        lesson=take_lesson(lab),
         shared=lab.shared,
         sent=lab.lessons.sent,
         nickname=nickname,
@@ -343,7 +343,8 @@ def _log(lab: Lab, before: PageSnapshot | None) -> LogSnapshot | None:
     return LogSnapshot(log, simulation.robot.frame, blend.target, is_level_set)
 
 
-def _lesson(lab: Lab) -> LessonSnapshot:
+def take_lesson(lab: Lab) -> LessonSnapshot:
+    """Take a snapshot of the lessons alone."""
     run = lab.lessons
     return LessonSnapshot(
         version=run.version,
