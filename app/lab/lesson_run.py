@@ -14,6 +14,7 @@ from onpath.app.lab.lesson_record import Beginning, Trace
 from onpath.app.lab.lesson_state import UNSENT, LessonState, Sent
 from onpath.app.lab.script_player import ScriptPlayer
 from onpath.app.lab.setups.capture import capture
+from onpath.app.lab.setups.former import with_paths_of_today
 from onpath.app.lab.setups.setup import Setup
 from onpath.app.lab.setups.step_setup import setup_of
 from onpath.app.lab.simulation import Simulation
@@ -155,7 +156,7 @@ class LessonRun(LessonState):
         self.progress = replace(self.progress, lesson="", route="", ended=False)
         self._begin_again(lab, running=lab.simulation.running)
         if self.before is not None:
-            lab.set_up(self.before)
+            lab.set_up(with_paths_of_today(self.before)[0])
             lab.simulation.editor.forget_edits()  # of the lesson
             lab.simulation.running = True
         self.version += 1

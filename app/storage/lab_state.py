@@ -111,7 +111,7 @@ def put_back(lab: Lab, state: LabState) -> None:
     progress = read_progress(state.get("lessons"))
     own = own_settings(own_of_today(state), "lab")
     before = without_absent_laws(without_absent_robots(state.get("before"))[0])[0]
-    earlier = with_paths_of_today(from_data(before))[0] if before else None
+    earlier = from_data(before) if before else None
     lab.set_up(setup)
     lab.simulation.set(**{name: getattr(own, name) for name in settings_kept("lab")})
     lab.lessons.resume(progress, earlier, lab)
