@@ -82,7 +82,7 @@ class Serve:
     """Proxy on another machine to trust, such as 10.0.0.7 or 10.0.0.0/8; repeat for more."""
     socket: Path | None = None
     """Listen on this Unix socket instead, for your own proxy, such as Jupyter's."""
-    most_clients: int = 64
+    most_clients: int = 80
     """Maximum number of browsers, 15 of 16 of them from one network; further ones wait."""
     hang_seconds: float = 10.0
     """A process whose simulation or network hangs for this time answers 503 at /health, and is

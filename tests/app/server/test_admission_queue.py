@@ -6,7 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from onpath.app.cli.serve import Serve
 from onpath.app.server.admission_queue import RESERVED, AdmissionQueue
+from onpath.app.server.server_options import MOST_CLIENTS
 
 PLACES = 32
 
@@ -44,6 +46,14 @@ def test_one_address_leaves_places_for_others(notices: Notices) -> None:
     )
     notices.come(queue, 1000, "198.51.100.1", inside)
     assert inside[-1] == 1000
+
+
+def test_a_class_of_sixty_and_its_teacher_fit_in_behind_one_router(notices: Notices) -> None:
+    assert Serve().most_clients == MOST_CLIENTS
+    queue, inside = AdmissionQueue(MOST_CLIENTS), list[int]()
+    for number in range(61):
+        notices.come(queue, number, "203.0.113.1", inside)
+    assert len(inside) == 61 and not notices
 
 
 def test_a_free_place_goes_to_the_address_that_has_fewest(notices: Notices) -> None:
