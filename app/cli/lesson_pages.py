@@ -60,6 +60,8 @@ class WriteWorksheet:
     """Write a PDF; needs Chromium and Playwright."""
     key: Path | None = None
     """Write the key as a page."""
+    variant: int = 1
+    """Order of the options, from 1 on, which sheet and key name; 0: that of the guide."""
     lessons: Path | None = None
     """Folder of lessons; by default the built-in ones."""
     language: str = "en"
@@ -77,7 +79,7 @@ class WriteWorksheet:
         _check(files, "--html FILE, --pdf FILE or --key FILE")
         course, folder, words = _course(self.lessons, self.language)
         name = chosen_lesson(course, self.lesson).name
-        page, key = worksheet(course, folder, name, words)
+        page, key = worksheet(course, folder, name, words, self.variant)
         _write(page, self.html, self.pdf)
         _write(key, self.key, None)
 
@@ -90,7 +92,9 @@ class WriteWorksheet:
         if not into.is_dir():
             raise ValueError(f"--all {into}: there is no such folder")
         course, folder, words = _course(self.lessons, self.language)
-        made = {name: worksheet(course, folder, name, words) for name in course.lessons}
+        made = {
+            name: worksheet(course, folder, name, words, self.variant) for name in course.lessons
+        }
         for name, (page, key) in made.items():
             _write(page, into / f"{name}.html", None)
             _write(key, into / f"{name}-key.html", None)

@@ -10,10 +10,11 @@ from importlib.metadata import version
 from pathlib import Path
 
 from onpath.app.common.templates import render
-from onpath.app.exports.course_material import taught_lesson
+from onpath.app.exports.course_material import AskedBlock, taught_lesson
 from onpath.lessons.concept_test.concept_test import FORMS
 from onpath.lessons.course import Course
-from onpath.lessons.option_order import LETTERS
+from onpath.lessons.option_order import LETTERS, option_order
+from onpath.lessons.schema import Choice, Option, Quiz
 from onpath.lessons.words import Words
 
 
@@ -44,12 +45,29 @@ def guide(
     )
 
 
-def worksheet(course: Course, folder: Path, name: str, words: Words) -> tuple[str, str]:
+def worksheet(
+    course: Course, folder: Path, name: str, words: Words, variant: int = 1
+) -> tuple[str, str]:
     """A lesson's worksheet of two pages, and its key, as standalone pages.
+
+    Args:
+        variant: decides the order of options, see `option_order`; 0: the author's.
 
     Raises:
         ValueError: see `guide`.
     """
+
+    def options(asked: AskedBlock) -> list[Option]:
+        shown = asked.block.options if isinstance(asked.block, Choice | Quiz) else ()
+        order = option_order(len(shown), asked.key, str(variant) if variant else "")
+        return [shown[index] for index in order]
+
     taught = taught_lesson(course, folder, name, words)
-    fields = {"taught": taught, "words": words, "letters": LETTERS}
+    fields = {
+        "taught": taught,
+        "variant": variant,
+        "options_of": options,
+        "words": words,
+        "letters": LETTERS,
+    }
     return render("guide/worksheet.html", **fields), render("guide/key.html", **fields)

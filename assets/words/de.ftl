@@ -1052,7 +1052,7 @@ route-here = { $route }: Teil { $stop } von { $stops }, bis Schritt { $last }, {
 ## Handreichung und Arbeitsblätter (app/exports/guide.py)
 
 guide-title = Handreichung für Lehrkräfte
-guide-intro = Was jede Lektion fragt, der Reihe nach, mit den Antworten. Die Klasse soll sich auf jede Vorhersage festlegen, bevor man etwas sieht. Stelle dann die hier vorgeschlagene Frage, lass Nachbarn diskutieren, und zeige erst danach, was geschieht. Die Buchstaben sind die der Präsentation und der Arbeitsblätter; die Labore der Lernenden zeigen die Möglichkeiten in anderer Reihenfolge.
+guide-intro = Was jede Lektion fragt, der Reihe nach, mit den Antworten. Die Klasse soll sich auf jede Vorhersage festlegen, bevor man etwas sieht. Stelle dann die hier vorgeschlagene Frage, lass Nachbarn diskutieren, und zeige erst danach, was geschieht. Die Buchstaben sind die der Präsentation; Arbeitsblätter haben eigene, die auch in ihren Lösungen stehen, und die Labore der Lernenden zeigen die Möglichkeiten in anderer Reihenfolge.
 guide-assumed = Nichts davon ist in einer Klasse gemessen. Die Minuten sind aus Wörtern, Läufen und Aufgaben der Lektionen geschätzt; was Lernende zeichnen oder sagen könnten, ist die Erwartung der Verfasser; und wie viel sie lernen, ist nicht bekannt. Mit dem Konzepttest lässt sich das in der eigenen Klasse messen.
 guide-cite = Zum Zitieren: für die Theorie Hladio, Nielsen, Wang: „Path following for mechanical systems: experiments and examples“; für Lektionen, Abbildungen und Durchgänge OnPath, Version { $version }.
 guide-needs = Voraussetzungen
@@ -1102,6 +1102,7 @@ worksheet-key = Lösungen: { $lesson }
 worksheet-name = Name
 worksheet-date = Datum
 worksheet-axes = Achsen, in die gezeichnet wird
+worksheet-variant = Variante { $number }
 worksheet-because = Weil
 worksheet-sure = Wie sicher?
 worksheet-after = Aufgaben und Fragen

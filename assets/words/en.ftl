@@ -929,7 +929,7 @@ route-here = { $route }: part { $stop } of { $stops }, to step { $last }, { $min
 ## The teacher's guide and the worksheets (app/exports/guide.py)
 
 guide-title = Teacher's guide
-guide-intro = What each lesson asks, in its order, with the answers. Let the class commit to every prediction before it is seen, ask what is suggested here, let neighbours discuss, and only then run it. The letters are those of the presentation and of the worksheets; students' own labs show the options in another order.
+guide-intro = What each lesson asks, in its order, with the answers. Let the class commit to every prediction before it is seen, ask what is suggested here, let neighbours discuss, and only then run it. The letters are those of the presentation; a worksheet has its own, which its key has, too, and students' own labs show the options in another order.
 guide-assumed = None of this has been measured in a class. The minutes are estimated from the lessons' words, runs and tasks; what students may draw or say is what the authors expect; and how much students learn is not known. The concept test lets you measure that in your own class.
 guide-cite = To cite: for the theory, Hladio, Nielsen, Wang: “Path following for mechanical systems: experiments and examples”; for lessons, figures and runs, OnPath, version { $version }.
 guide-needs = Prerequisites
@@ -979,6 +979,7 @@ worksheet-key = Key: { $lesson }
 worksheet-name = Name
 worksheet-date = Date
 worksheet-axes = Axes to draw on
+worksheet-variant = Variant { $number }
 worksheet-because = Because
 worksheet-sure = How sure?
 worksheet-after = tasks and questions

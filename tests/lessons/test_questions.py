@@ -205,6 +205,25 @@ def test_guide_and_worksheet_have_the_questions(tmp_path: Path) -> None:
         assert answer in told and answer in key and answer not in sheet
 
 
+def test_each_variant_of_a_worksheet_has_the_letters_of_its_key_and_0_those_of_the_guide(
+    tmp_path: Path,
+) -> None:
+    course = course_of(tmp_path)
+    blocks = [block for step in course.lesson("01-a", "en").steps for block in step.blocks]
+    asked = [block.options for block in blocks if isinstance(block, Choice | Quiz)]
+    right = {option.text for options in asked for option in options if option.right}
+    orders = list[tuple[str, ...]]()
+    for variant in range(4):
+        pages = worksheet(course, tmp_path, "01-a", ENGLISH, variant)
+        assert all(ENGLISH("worksheet.variant", number=variant) in page for page in pages)
+        shown = re.findall(r'class="letter">☐ (\w)</span>(.*?)</li>', pages[0])
+        told = re.findall(rf"{ENGLISH('guide.right')} (\w)\.</span> (.*)", pages[1])
+        assert set(told) <= set(shown) and {text for _, text in told} == right
+        orders.append(tuple(text for _, text in shown))
+    assert orders[0] == tuple(option.text for options in asked for option in options)
+    assert len(set(orders)) > 1
+
+
 def test_numbers_asked_for_in_the_course_are_those_of_the_formulas() -> None:
     course, problems = built_in_course()
     asked = {

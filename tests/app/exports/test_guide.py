@@ -39,6 +39,7 @@ from tests.support.lesson_texts import LESSON, REFERENCE, write_lesson
 pytestmark = pytest.mark.thorough
 
 ARTICLE = re.compile(r'<article[^>]* data-asked="([^"]+)">(.*?)</article>', re.DOTALL)
+OPTION = re.compile(r'<li><span class="letter">☐ (\w)</span>(.*?)</li>', re.DOTALL)
 in_every_language = pytest.mark.parametrize("language", languages())
 
 
@@ -162,7 +163,9 @@ def test_a_worksheet_has_every_question_once_and_only_its_key_the_answers(
             assert isinstance(block, Choice | Quiz)
             (right,) = [option for option in block.options if option.right]
             assert right.text in answers[each] and right.answer in answers[each]
-            assert all(option.text in sheet[each] for option in block.options)
+            at = {text: letter for letter, text in OPTION.findall(sheet[each])}
+            assert at.keys() == {option.text for option in block.options}
+            assert f"{Words(language)('guide.right')} {at[right.text]}." in answers[each]
             assert not any(option.answer in sheet[each] for option in block.options)
 
 
