@@ -22,7 +22,8 @@ def grade_sheet(
 ) -> Sheet | None:
     """The sheet Grades, with a column for each lesson that anybody has begun, 0 to 100.
 
-    Moodle imports it (*Import*, *Paste from spreadsheet*). Of two labs of one student, the one with
+    It has the form that Moodle imports (*Import*, *Paste from spreadsheet*), by Moodle's
+    documentation and source; it was not tried in a Moodle. Of two labs of one student, the one with
     more points in a lesson counts. Students without an identification are left out.
 
     Returns:
@@ -39,21 +40,22 @@ def grade_sheet(
         row = rows.setdefault(member.identification, {HEADINGS[asks]: member.identification})
         for name, lesson in lessons.items():
             notes = member.progress.notes.get(name)
-            points = 0.0 if notes is None else points_of(lesson, notes)
-            row[titles[name]] = max(float(row.get(titles[name], 0.0)), points)
+            points = 0 if notes is None else points_of(lesson, notes)
+            row[titles[name]] = max(int(row.get(titles[name], 0)), points)
     return Sheet("Grades", (HEADINGS[asks], *titles.values()), list(rows.values()))
 
 
-def points_of(lesson: Lesson, notes: Notes) -> float:
+def points_of(lesson: Lesson, notes: Notes) -> int:
     """The share of a lesson's predictions and questions that were answered, in percent.
 
     A prediction that was passed over is not answered. Warm-up questions and tasks do not count.
+    Points are whole, because Moodle takes no decimal comma of a pasted sheet in a new column.
     """
     items = list(_items(lesson))
     answered = sum(
         any(each.lost or not each.is_skipped for each in given_to(notes, item)) for item in items
     )
-    return round(100 * answered / len(items), 1) if items else 0.0
+    return round(100 * answered / len(items)) if items else 0
 
 
 def _items(lesson: Lesson) -> Iterable[str]:
