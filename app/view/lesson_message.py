@@ -12,7 +12,7 @@ import msgspec
 
 from onpath.app.channel.lesson_messages import LessonMessage, MeasuredMessage
 from onpath.app.common.templates import part_of_page
-from onpath.app.steps.block_data import block_data, curves_data, script_data
+from onpath.app.steps.block_data import answer_data, block_data, curves_data, script_data
 from onpath.app.steps.step_html import StepPart, part_of, predicted_second, step_html
 from onpath.app.view.lesson_end import lesson_end
 from onpath.app.view.lesson_view import LessonView
@@ -211,7 +211,9 @@ def _remark(block: Prediction, run: LessonView) -> str:
 
 
 def _discuss(block: Prediction, first: Answer, run: LessonView) -> str:
-    if isinstance(block, Sketch) or first.option not in range(len(block.options)):
+    if isinstance(block, Sketch):
+        return run.words("lesson.discuss_curve" if first.times else "lesson.discuss")
+    if first.option not in range(len(block.options)):
         return run.words("lesson.discuss")
     letter = LETTERS[run.order(block).index(first.option)]
     return run.words("lesson.discuss_letter", letter=letter)
@@ -242,6 +244,8 @@ def _block(part: StepPart, lesson: Lesson, index: int, run: LessonView) -> dict[
         data |= {"id": block.id, "best": block.best}
     elif run.is_voted_on(f"{index}.{part.block_index}"):
         data["voted"] = True
+    elif isinstance(block, Sketch) and (first := run.first_answer()) is not None and first.times:
+        data["before"] = answer_data(first)
     return data
 
 

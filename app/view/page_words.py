@@ -22,6 +22,7 @@ CHART = (
 """Messages of the plots, which figures and lessons have."""
 _PLAIN = (
     *CHART,
+    "chart.first",
     *("lens.closest", "lens.reference", "lens.straight"),
     *("run.hold_both", "run.hold", "run.let_both_go", "run.let_go", "run.hold_hint"),
     *("run.run", "run.pause", "run.run_hint", "run.rate", "plots.time", "plots.time_hint"),

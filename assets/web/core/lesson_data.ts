@@ -164,6 +164,8 @@ export interface SketchData {
     features?: SketchFeature[]
     /** Of the circle that is followed, [m]; null for another path. */
     radius?: number | null
+    /** What the student drew before a discussion, after which the class is asked again. */
+    before?: Answer
 }
 
 /** A sketch at the end of a lesson, with what happened. */

@@ -191,7 +191,8 @@ export class Shell {
         this.asked = seat.asked
         header.sit(seat)
         this.seat?.show(seat)
-        if ((place && seat.place !== place && !seat.away) || (asked && !seat.asked)) {
+        const isDone = !seat.away && (!seat.asks || seat.identification)
+        if ((place && seat.place !== place && isDone) || (asked && !seat.asked)) {
             this.seat?.close() // what was asked for is done
             if (document.activeElement === document.body) header.seat.focus()
         }

@@ -97,7 +97,8 @@ export class ClassSheet {
     private member(seat: ClassMessage): HTMLElement[] {
         const { texts } = this
         keepDraft(DRAFT, null)
-        const own = [...seat.asks ? [this.tells(seat.asks, "class.id_hint", "class.id_send", seat.identification, typed => ({ is: "identify", typed }))] : [], this.word(seat)]
+        const known = seat.identification ? "class.id_known" : "class.id_hint"
+        const asked = seat.asks ? [this.tells(seat.asks, known, "class.id_send", seat.identification, typed => ({ is: "identify", typed }))] : []
         const former = seat.away ? this.former(seat) : []
         const [before = "", after = ""] = phrase(texts, "class.member").split("{name}")
         const leave = (this.acts = pressed("", phrase(texts, "class.leave"), () => {
@@ -107,7 +108,7 @@ export class ClassSheet {
         const forget = pressed("warning", phrase(texts, "class.forget_me"), () => {
             confirm(texts, phrase(texts, "class.forget_me"), phrase(texts, "class.forget_me_sure"), () => { this.host.send({ is: "forget_me" }) })
         })
-        return [made("p", "", before, made("b", "", made("bdi", "", seat.name)), after), made("p", "", phrase(texts, "class.then")), ...former, ...own, this.stored(seat), leave, forget, this.refusal]
+        return [made("p", "", before, made("b", "", made("bdi", "", seat.name)), after), ...asked, made("p", "", phrase(texts, "class.then")), ...former, this.word(seat), this.stored(seat), leave, forget, this.refusal]
     }
 
     /** A word that links two tests over months. */

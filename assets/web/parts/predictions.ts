@@ -80,6 +80,11 @@ export function predict(page: PageData, prediction: Prediction, student: Student
         const seconds = significant(page, data.seconds, 4)
         chart.sheet.canvas.setAttribute("aria-label", phrase(page, "site.sketch", { quantity: data.label, unit: data.unit, seconds }))
         chart.ghost = curveOf(answerKept())
+        const before = curveOf(data.before)
+        if (before) {
+            chart.lines = [{ ...before, name: phrase(page, "chart.first"), tone: "yours", dashed: true, thin: true }]
+            chart.hasPeaks = false
+        }
         const ask = () => told.replaceChildren(phrase(page, "site.draw_first"), made("span", "by-keys", ` ${phrase(page, "site.draw_keys")}`))
         const hint = () => (chart.hint = chart.ghost ? "" : phrase(page, "chart.draw"))
         hint()

@@ -288,6 +288,24 @@ def test_the_concept_test_tells_nothing_and_is_handed_in(lab: Lab) -> None:
     assert "Correct answer" in html(told(lab))
 
 
+def test_a_curve_that_is_drawn_again_is_told_with_the_first_one(lab: Lab) -> None:
+    do(lab, c.SetLanguage("en"))
+    for name, index, place in places(Sketch)[:3]:
+        at(lab, name, index)
+        for _ in range(2):  # before the first answer, and after it
+            assert "before" not in told(lab)["steps"][index]["blocks"][place]
+            do(lab, c.Predict(times=(0.0, 1.0), values=(0.0, 1.0)))
+        do(lab, TakeStep(name, index, again=True))
+        asked = told(lab)
+        first = asked["steps"][index]["blocks"][place]["before"]
+        assert first == {"times": [0.0, 1.0], "values": [0.0, 1.0]}
+        assert ENGLISH("lesson.discuss_curve") in unescape(html(asked))
+        do(lab, c.Predict(times=(0.0, 1.0), values=(0.0, 2.0)))
+        answered = told(lab)
+        assert answered["steps"][index]["blocks"][place]["before"] == first
+        assert given_in(answered)[str(index)]["answer"]["values"] == [0.0, 2.0]
+
+
 def test_verdicts_and_curves_are_measured(lab: Lab) -> None:
     do(lab, c.SetLanguage("en"))
     at(lab, "01-path-or-timetable", 6)

@@ -128,6 +128,8 @@ test("a member is asked only for what the teacher asks for, and a word may be gi
     assert.deepEqual(sent, [{ is: "identify", typed: "34" }, { is: "identify", typed: "" }, { is: "link", word: "cactus" }])
     card.hear({ is: "seat", of: "link", why: "too short", address: "" })
     assert.deepEqual([refusal(), word!.querySelector("input")!.ariaInvalid, field.ariaInvalid], ["too short", "true", null])
+    assert.match(told!.textContent, /class\.id_known/)
+    assert.doesNotMatch(opened({ ...MEMBER, asks: "ID number" }).body.textContent, /class\.id_known/)
     card.show({ ...MEMBER, linked: "own" })
     assert.match(body.textContent, /class\.word_own/)
     card.show({ ...MEMBER, linked: "shared" })

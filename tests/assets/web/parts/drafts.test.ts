@@ -1,4 +1,4 @@
-import { TEXTS } from "../page"
+import { inkOf, resize, TEXTS } from "../page"
 import assert from "node:assert/strict"
 import { test } from "node:test"
 import { keepDraftsOf, keepScroll } from "../../../../assets/web/core/drafts"
@@ -94,4 +94,21 @@ test("a text begins where one has read it to, and another one at its top", () =>
     assert.equal(read("step 1").scrollTop, 0) // one has left it
     keepDraftsOf("another lab")
     assert.equal(read("step 1").scrollTop, 0)
+})
+
+test("what was drawn before a discussion stays in sight, and is none of the new answer", () => {
+    const before = { times: [0, 4, 8], values: [0, 30, 10] }
+    const { page } = loaded({ ...SKETCH, before }, COMMITTING), left: unknown[] = []
+    const { board, commit } = predict(page, predictionAt(page.steps, 0)!, student(left))
+    const canvas = board!.querySelector("canvas")!
+    resize(canvas, 600, 200)
+    const named = () => inkOf(canvas).texts.map(each => each.text)
+    assert.ok(commit.disabled)
+    const points = [...board!.querySelectorAll<HTMLElement>("[role=slider]")]
+    assert.ok(points.every(each => each.getAttribute("aria-valuenow") === "0"))
+    points[8]!.dispatchEvent(new KeyboardEvent("keydown", { key: "PageUp", bubbles: true, cancelable: true }))
+    assert.deepEqual(["chart.first", "chart.yours"].filter(each => named().includes(each)), ["chart.first", "chart.yours"])
+    commit.click()
+    assert.equal(left.length, 1)
+    assert.notDeepEqual((left as [[number, typeof before]])[0][1].values, before.values)
 })
