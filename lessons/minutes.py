@@ -1,9 +1,10 @@
 """How long a lesson takes, estimated from its files.
 
 The sum of the words at 130 a minute, the durations of the runs, and a fixed time for each thing
-that is drawn, chosen, answered or done. Folded texts, hints, and answers to wrong options are not
-counted: they need not be read. A formula has as many words as letters and numbers. The minutes of a
-lesson are those of its steps that are not optional; the optional ones are given separately.
+that is drawn, chosen, answered or done. Folded texts, hints, answers to wrong options, and texts
+for some answers only are not counted: they need not be read. A formula has as many words as letters
+and numbers. The minutes of a lesson are those of its steps that are not optional; the optional ones
+are given separately.
 """
 
 from __future__ import annotations
@@ -78,7 +79,7 @@ def page_words(step: Step) -> int:
 
 def _shown(block: Block) -> list[str]:
     if isinstance(block, Text):
-        return [block.html]
+        return _for_all(block)
     if isinstance(block, Task):
         return [block.text]
     options = block.options if isinstance(block, Choice | Quiz) else ()
@@ -105,6 +106,11 @@ def step_minutes(step: Step) -> Minutes:
         predictions=sum(map(_answering, asked)),
         tasks=MINUTES["task"] * len(step.tasks()) + tried,
     )
+
+
+def _for_all(block: Text) -> list[str]:
+    """The text, unless it is shown after some answers only."""
+    return [] if block.when else [block.html]
 
 
 def _answering(block: Block) -> float:
@@ -147,7 +153,7 @@ def _read(block: Block) -> list[str]:
 
 @_read.register
 def _(block: Text) -> list[str]:
-    return [block.html]
+    return _for_all(block)
 
 
 @_read.register

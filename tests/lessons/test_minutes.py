@@ -56,6 +56,14 @@ def test_more_words_take_longer_unless_they_are_folded(tmp_path: Path) -> None:
     assert spent(tmp_path, LESSON.replace(BEFORE, folded)) == spent(tmp_path)
 
 
+def test_a_text_for_some_answers_only_takes_no_time(tmp_path: Path) -> None:
+    more = " ".join(["word"] * WORDS)
+    some = LESSON.replace("# explain: Why", f"```when wrong\n{more}\n```\n\n# explain: Why")
+    assert spent(tmp_path, some) == spent(tmp_path)
+    steps = read_lesson(write_lesson(tmp_path, some)).steps
+    assert max(map(page_words, steps)) < WORDS
+
+
 def test_runs_take_their_own_time_and_everything_done_a_fixed_one(tmp_path: Path) -> None:
     plain = spent(tmp_path)
     assert plain.runs == pytest.approx((2.0 + 1.0) / 60)

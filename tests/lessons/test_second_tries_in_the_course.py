@@ -1,4 +1,4 @@
-"""The second tries of the course, and the numbers that are right: by a formula, and by a run."""
+"""What the course asks after a wrong answer; numbers are right by a formula, and by a run."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import onpath
-from onpath.lessons.schema import Choice, NumberQuestion, Quiz
+from onpath.lessons.adaptive.branches import question_before
+from onpath.lessons.schema import Choice, NumberQuestion, Quiz, Text
 from tests.support.built_in import built_in_course
 
 LESSONS = built_in_course()[0].lessons
@@ -64,6 +65,22 @@ def test_every_question_has_a_second_try_with_its_own_number(name: str) -> None:
     assert None not in seconds and len(found) == len(NUMBERS[name])
     for question, right in zip(found, NUMBERS[name], strict=True):
         assert abs(question.number - right) < 0.7 * question.tolerance, question.question
+
+
+@pytest.mark.parametrize("name", LESSONS)
+def test_a_wrong_prediction_is_taken_up_in_the_run_after_it(name: str) -> None:
+    """And nothing is said of it on its own page, where it is not judged yet."""
+    for lesson in built_in_course()[0].lessons[name].values():
+        steps = lesson.steps
+        texts = [
+            (step.kind, question_before(steps, index, number))
+            for index, step in enumerate(steps)
+            for number, block in enumerate(step.blocks)
+            if isinstance(block, Text) and block.when == "wrong"
+        ]
+        choices = [block for step in steps for block in step.blocks if isinstance(block, Choice)]
+        taken_up = {found[1]: kind for kind, found in texts if found is not None}
+        assert {taken_up.get(choice) for choice in choices} <= {"run"}
 
 
 def test_those_about_the_lab_are_what_it_does() -> None:
