@@ -54,7 +54,8 @@ class IdentificationResult:
         """Friction and delay, for `onpath.simulate(..., **result.settings)` and `onpath.arena`.
 
         `coulomb` is the mean of the motors' dry friction, [N m]. `delay` is that of torques that
-        were logged before they acted, in control intervals of 1 ms.
+        were logged before they acted, in control intervals: of 1 ms or, if it is longer than eight
+        of these, of `control_rate`.
         """
         return self.found.settings
 

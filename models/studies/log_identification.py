@@ -18,6 +18,7 @@ from onpath.models.studies.parameter_estimate import Estimate, estimate, unexpla
 from onpath.models.studies.record_file import LogColumns, log_columns, read_records
 from onpath.models.systems.link_parameters import scaled_system
 from onpath.models.systems.parameter_specs import unknown_name
+from onpath.models.systems.parameters import TICK, Parameters, declared
 from onpath.models.systems.robots import Robot, RobotEntry
 from onpath.models.systems.system import MechanicalSystem
 
@@ -57,15 +58,23 @@ class FileEstimate:
         """Settings with which a robot is simulated with this friction and delay.
 
         `coulomb` is the mean of the motors' dry friction. `delay` is that of torques that were
-        logged before they acted, in control intervals of 1 ms; torques that were logged late say
-        nothing of the controller.
+        logged before they acted, in control intervals: of 1 ms or, if it is too long for these, of
+        `control_rate`. Torques that were logged late say nothing of the controller.
         """
         dry = [each.value for each in self.estimate.found if each.is_dry_friction]
         late = self.estimate.delay
         found = {"coulomb": max(sum(dry) / len(dry), 0.0)} if dry else {}
         if late is not None and late.high < 0:
-            found["delay"] = -1e3 * late.value
+            found |= _delay_settings(-late.value)
         return {name: float(f"{value:.4g}") for name, value in found.items()}
+
+
+def _delay_settings(delay: float) -> dict[str, float]:
+    """A delay, [s], in intervals of the fastest control rate up to 1 kHz at which it can be set."""
+    known = declared(Parameters)
+    rates = [rate for rate in known["control_rate"].options if rate <= 1 / TICK]
+    rate = max(rate for rate in rates if delay * rate <= known["delay"].high)
+    return {"delay": delay * rate} | ({} if rate == 1 / TICK else {"control_rate": rate})
 
 
 def identified_system(entry: RobotEntry) -> tuple[MechanicalSystem, Array]:

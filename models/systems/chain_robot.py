@@ -46,9 +46,12 @@ from onpath.models.robot_files.xml_elements import shown
 from onpath.models.systems.drawing import Depths, Drawing, Point, Spot
 from onpath.models.systems.forces import Grip
 from onpath.models.systems.parameter_specs import (
+    dry_friction,
     model_error,
     number,
     path_rise,
+    static_friction,
+    torque_steps,
     unknown_payload,
     velocity_filter,
 )
@@ -89,7 +92,7 @@ SUBSCRIPTS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 
 @dataclass(frozen=True, slots=True)
 class ChainParameters(Parameters):
-    """Additional parameters of every chain."""
+    """Additional parameters of every chain, and limits that suit an arm of a tonne, too."""
 
     torque_limit: float = number(
         0.0,
@@ -101,13 +104,16 @@ class ChainParameters(Parameters):
         on=50.0,
         compiles=True,
     )
+    torque_step: float = torque_steps(20, scale="log")
+    coulomb: float = dry_friction(500, scale="log")
+    stiction: float = static_friction(500, scale="log")
     error_inertia: float = model_error(
         "Inertia error", "the controller's masses and inertias are off by this"
     )
     error_gravity: float = model_error(
         "Weight error", "the controller's weights are off by this", on=10.0
     )
-    payload: float = unknown_payload((0, 3, 0.05), on=0.2)
+    payload: float = unknown_payload((0, 500, 0.05), on=0.2, scale="log")
 
 
 @dataclass(frozen=True, slots=True)

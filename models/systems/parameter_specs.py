@@ -179,6 +179,29 @@ def unknown_payload(bounds: tuple[float, float, float], on: float, **more: Any) 
     return number(0.0, "kg", bounds, text, group="realism", label="Payload", on=on, **more)
 
 
+def torque_steps(most: float, **more: Any) -> Any:
+    """A dataclass field for the steps of the motors' torque, [N m]."""
+    text, bounds = "the motors' torque is a multiple of this; 0: any torque", (0, most, 0.001)
+    named = {"group": "realism", "label": "Torque steps", "on": 0.02}
+    return number(0.0, "N m", bounds, text, **named, **more)
+
+
+def dry_friction(most: float, **more: Any) -> Any:
+    """A dataclass field for the dry friction of every motor, [N m]."""
+    text, bounds = "dry friction in the joints; 0: none", (0, most, 0.005)
+    named = {"group": "realism", "label": "Dry friction", "on": 0.05}
+    return number(0.0, "N m", bounds, text, **named, **more)
+
+
+def static_friction(most: float, **more: Any) -> Any:
+    """A dataclass field for the static friction of every motor, [N m]."""
+    text = (
+        "a joint at rest stays there up to this torque, and slides with the dry friction; 0: none"
+    )
+    named = {"group": "realism", "label": "Static friction", "compiles": True, "on": 0.08}
+    return number(0.0, "N m", (0, most, 0.005), text, **named, **more)
+
+
 def pivot_damping(default: float) -> Any:
     """A dataclass field for the damping of a pivot that no motor drives, [N m s]."""
     text = "damping of the pivot, which has no motor"

@@ -20,7 +20,10 @@ from onpath.models.systems.parameter_specs import (
     Need,
     Spec,
     choice,
+    dry_friction,
     number,
+    static_friction,
+    torque_steps,
     velocity_filter,
 )
 
@@ -64,15 +67,7 @@ class Parameters(LawParameters):
         needs=(Need("torque_limit"), Need("at_limit", ("across_first", "slow_down"))),
         compiles=True,
     )
-    torque_step: float = number(
-        0.0,
-        "N m",
-        (0, 0.2, 0.001),
-        "the motors' torque is a multiple of this; 0: any torque",
-        group="realism",
-        label="Torque steps",
-        on=0.02,
-    )
+    torque_step: float = torque_steps(0.2)
     encoder_counts: float = number(
         0.0,
         "per turn",
@@ -117,25 +112,8 @@ class Parameters(LawParameters):
         label="Noise seed",
         needs=(NOISY,),
     )
-    coulomb: float = number(
-        0.0,
-        "N m",
-        (0, 0.3, 0.005),
-        "dry friction in the joints; 0: none",
-        group="realism",
-        label="Dry friction",
-        on=0.05,
-    )
-    stiction: float = number(
-        0.0,
-        "N m",
-        (0, 0.3, 0.005),
-        "a joint at rest stays there up to this torque, and slides with the dry friction; 0: none",
-        group="realism",
-        label="Static friction",
-        compiles=True,
-        on=0.08,
-    )
+    coulomb: float = dry_friction(0.3)
+    stiction: float = static_friction(0.3)
     control_rate: int = choice(
         1000,
         (50, 100, 200, 250, 500, 1000, 2000),

@@ -1,6 +1,6 @@
 // The scale of a slider, and numbers as people type them.
 
-const KNEE = 0.02 // share of the largest number below which a logarithmic scale through zero is nearly linear
+const KNEE = { share: 0.02, steps: 10 } // of the largest number; below the less a logarithmic scale through zero is nearly linear
 const FINE = 0.01 // step on a logarithmic scale, as a share of the number
 const NEAR = 0.012 // share of a slider's length within which it snaps to a meaningful number
 
@@ -17,7 +17,7 @@ export class Scale {
         this.low = tidy(Math.ceil(low / step - 1e-9) * step)
         this.high = tidy(Math.floor(high / step + 1e-9) * step)
         this.isLog = scale === "log"
-        this.knee = low > 0 ? 0 : KNEE * Math.max(-low, high)
+        this.knee = low > 0 ? 0 : Math.min(KNEE.share * Math.max(-low, high), KNEE.steps * step)
     }
 
     /** Where a number is on the slider, from 0 to 1. */

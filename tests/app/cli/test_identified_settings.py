@@ -8,12 +8,17 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import onpath
 from onpath.app.cli.assignments import assignments
 from onpath.app.cli.main import run_command
 from onpath.app.cli.serve import Serve
+from onpath.models.control.settable import with_values
 from onpath.models.studies.arena import trials_of
+from onpath.models.studies.log_identification import FileEstimate
+from onpath.models.studies.parameter_estimate import BaseParameter, Estimate
 from onpath.models.systems.catalogue import ROBOTS
 from tests.support.arm_logs import DRY, Logger, motion_of
 
@@ -52,10 +57,24 @@ def test_a_log_gives_the_settings_of_every_command(
 
     lab = Serve(set=(f"@{file}",))._settings(ROBOTS["five_bar"])  # pyright: ignore[reportPrivateUsage]
     assert {name: float(value) for name, value in lab.items()} == found.settings
-    for given in (settings, assignments((f"@{file}",))):
-        parameters = trials_of(("five_bar",), 1, 1, given)[0][1].experiment(False).parameters
+    for each in (settings, assignments((f"@{file}",))):
+        parameters = trials_of(("five_bar",), 1, 1, each)[0][1].experiment(False).parameters
         assert parameters.coulomb == run.experiment.parameters.coulomb
         assert parameters.delay == run.experiment.parameters.delay
+
+
+@given(st.floats(1e-4, 0.1), st.floats(1e-3, 200))
+def test_what_a_log_tells_of_an_arm_can_be_set(delay: float, friction: float) -> None:
+    """Also of a large arm and a slow controller."""
+    late = BaseParameter("delay", -delay, 0.0, -delay, -delay)
+    dry = BaseParameter("c1", friction, 0.0, friction, friction)
+    rows = np.zeros((1, 7))
+    found = Estimate((dry,), (), 0.0, late, rows[:, 0], rows, rows)
+    zeros = np.zeros(7)
+    file = FileEstimate("seven_axes", (), (), 1.0, True, found, None, zeros, zeros, {})
+    parameters = with_values(ROBOTS["seven_axes"].parameters(), file.settings)
+    assert parameters.delay / parameters.control_rate == pytest.approx(delay, rel=1e-3)
+    assert parameters.coulomb == pytest.approx(friction, rel=1e-3)
 
 
 @pytest.mark.parametrize(

@@ -77,7 +77,7 @@ messages._resource = with_new_words
 def test_a_setting_is_declared_once_and_is_everywhere() -> None:
     before = {
         lab_settings.__name__: ("    presenting: bool = own(", SETTING),
-        parameters.__name__: ("    coulomb: float = number(", PARAMETER),
+        parameters.__name__: ("    sensor_noise: float = number(", PARAMETER),
     }
     script = ADD.format(before=before, german=GERMAN) + textwrap.dedent(EVERYWHERE)
     done = subprocess.run(

@@ -49,6 +49,9 @@ test("a number that one means can be met, and its neighbours by keys", () => {
     assert.notEqual(scale.settled(scale.at(scale.place(400) + 0.05), [400]), 400)
     assert.equal(scale.moved(400, 1), 405)
     assert.ok(scale.place(900) - scale.place(100) > 0.4) // useful gains have room
+    const friction = new Scale({ low: 0, high: 500, step: 0.005, scale: "log" })
+    for (const [small, larger] of [[0.05, 0.5], [0.5, 5], [5, 50]] as const)
+        assert.ok(friction.place(larger) - friction.place(small) > 0.15) // of a small arm, and of a large one
 })
 
 test("a slider from -π has 0 in its range", () => {
