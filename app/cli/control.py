@@ -58,7 +58,7 @@ class ControlCommand:
         from onpath.app.plant.controller_process import ControllerProcess
 
         beside = ControllerProcess(self._plan(), address)
-        driving = Driving(beside, self.at_fault)
+        driving = Driving(beside, self.at_fault, keeps=self.log is not None)
         try:
             code = driving.run()
         except BaseException:  # such as a terminal that is gone

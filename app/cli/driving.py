@@ -39,11 +39,11 @@ class Driving:
     """Asks a controller beside a plant, says what it does, and takes what is typed.
 
     Attributes:
-        rows: t, q, v and torque of each measurement up to now.
+        rows: t, q, v and torque of each measurement up to now, if they are kept.
     """
 
-    def __init__(self, beside: ControllerProcess, at_fault: str) -> None:
-        self._beside, self._at_fault = beside, at_fault
+    def __init__(self, beside: ControllerProcess, at_fault: str, *, keeps: bool = True) -> None:
+        self._beside, self._at_fault, self._keeps = beside, at_fault, keeps
         self._wanted = SimpleQueue[Change]()
         self._told = time.monotonic()
         self.rows = list[tuple[float, ...]]()
@@ -51,20 +51,24 @@ class Driving:
     def run(self) -> int:
         """Go on until Enter or Ctrl-C, or until it ends itself; the exit code."""
         beside = self._beside
+        for number in END_SIGNALS:
+            signal.signal(number, lambda *_: self._wanted.put(beside.stop))
         host, port = beside.address
         print(NOT_SAFE)
         print(f"It waits for a plant at udp://{host}:{port}. Enter or Ctrl-C stops it.")
         print("While it runs, type K1=900, path=circle or law=NAME.", flush=True)
-        for number in END_SIGNALS:
-            signal.signal(number, lambda *_: self._wanted.put(beside.stop))
         if sys.stdin is not None:
             Thread(target=self._read, name="typed", daemon=True).start()
         report = self._until_end()
         if not report.started:
+            print("It ends. No plant has measured.", flush=True)
             return 0
         print(f"It has ended: {report.reason}. Its torque is now: {self._at_fault}.")
         print(_counted(report), flush=True)
-        self._until_silent(report)
+        silent = self._until_silent(report)
+        print(
+            "The plant is silent." if silent else "The plant gets no torque any more.", flush=True
+        )
         return 0 if report.code == STOPPED else 1
 
     def _until_end(self) -> PlantReport:
@@ -74,20 +78,30 @@ class Driving:
             if change == self._beside.stop and not report.started:
                 return report
             report = self._changed(change)
-            self.rows += report.rows
+            self._keep(report)
             if report.started and time.monotonic() - self._told > TOLD:
                 self._told = time.monotonic()
                 print(self._state(report), flush=True)
         return report
 
-    def _until_silent(self, report: PlantReport) -> None:
-        """Let it give the torque for a fault until the plant is silent, or Enter is pressed."""
+    def _until_silent(self, report: PlantReport) -> bool:
+        """Let it give the torque for a fault until the plant is silent, or somebody stops again.
+
+        Whether the plant is silent.
+        """
         answered, since = report.answered, time.monotonic()
-        while time.monotonic() - since < TOLD and self._next() != self._beside.stop:
+        while time.monotonic() - since < TOLD:
+            if self._next() == self._beside.stop:
+                return False
             now = self._beside.report()
-            self.rows += now.rows
+            self._keep(now)
             if now.answered != answered:
                 answered, since = now.answered, time.monotonic()
+        return True
+
+    def _keep(self, report: PlantReport) -> None:
+        if self._keeps:
+            self.rows += report.rows
 
     def _next(self) -> Change:
         """The next change that is wanted; if none is within `EVERY`, only a report."""

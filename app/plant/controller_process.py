@@ -105,8 +105,11 @@ class ControllerProcess:
         theirs.close()
         try:
             self.address: Address = self._answered(PATIENCE)
-        except BaseException:
+        except (ValueError, OSError):
             self.close()
+            raise
+        except BaseException:  # such as Ctrl-C, when a plant may measure already
+            self.leave()
             raise
 
     @property
@@ -191,7 +194,8 @@ def serve(connection: Connection, plan: ControllerPlan, address: Address) -> Non
             link = PlantLink(controllers, plan.silence)
             _Serving(connection, link, plant, plan.asked).run()
     except (ValueError, OSError) as error:
-        connection.send(error)
+        with suppress(OSError):  # nobody wants to know
+            connection.send(error)
 
 
 class _Serving:

@@ -3,6 +3,8 @@ is set in the lab is set there."""
 
 from __future__ import annotations
 
+import logging
+import threading
 import time
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -17,6 +19,7 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.plant_state import SIDE, PlantState
 from onpath.app.plant.controller_process import (
     ASKED,
+    LINGER,
     Address,
     ControllerPlan,
     ControllerProcess,
@@ -29,6 +32,8 @@ from onpath.models.errors import CodedError, Message
 from onpath.models.paths.path_design import PathDesign
 from onpath.models.systems.parameter_specs import unknown_name
 from onpath.models.systems.parameters import Parameters
+
+log = logging.getLogger(__name__)
 
 LOST = 2.0  # [s] without a sign of life of the page that drives, after which it ends
 SILENT = 1.0  # [s] without a measurement, after which a plant that has ended is gone
@@ -85,6 +90,7 @@ class LabPlant(LabDisplay):
         self._state = PlantState(
             address=_shown(choice.address), laws=choice.laws, at_fault=choice.at_fault
         )
+        self._lock = threading.Lock()  # of what is wanted, and of whether it is live
         self._wanted = ""  # torque at a fault, of a start that somebody wants
         self._stopped: Message | None = None  # why it is to end, or has been told to
         self._beside: ControllerProcess | None = None
@@ -109,18 +115,21 @@ class LabPlant(LabDisplay):
         """
         if at_fault not in AT_FAULT:
             raise unknown_name(at_fault, [*AT_FAULT], "at_fault")
-        if self._state.can_start:
-            self.beat()
-            self._wanted = at_fault
+        self.beat()
+        with self._lock:
+            if self._state.can_start:
+                self._wanted = at_fault
 
     def stop(self, why: Message = Message("plant.stopped")) -> None:  # noqa: B008
         """End it now, also while the simulation thread is busy."""
-        self._wanted = ""
-        if self._state.is_live and self._stopped is None:
+        with self._lock:
+            self._wanted = ""
+            if not self._state.is_live or self._stopped is not None:
+                return
             self._stopped = why
-            if (beside := self._beside) is not None:
-                with suppress(OSError):  # the next frame notices
-                    beside.stop()
+        if (beside := self._beside) is not None:
+            with suppress(OSError):  # the next frame notices
+                beside.stop()
 
     def beat(self) -> None:
         """Note that the page is there."""
@@ -132,9 +141,9 @@ class LabPlant(LabDisplay):
         self._starts.shutdown()
         if self._coming is not None and self._coming.exception() is None:
             self._coming.result().close()
-        if (beside := self._beside) is not None:
-            is_used = self._state.phase == "running" or self._state.sends
-            beside.leave() if is_used else beside.close()
+        if self._beside is not None:
+            log.info("the plant's torque is now: %s, for up to %g s", self._state.at_fault, LINGER)
+            self._beside.leave()
 
     # In the simulation thread
 
@@ -158,7 +167,7 @@ class LabPlant(LabDisplay):
         elif self._coming is not None:
             state = self._come(self._coming)
         elif self._wanted:
-            state = self._begun(self._wanted)
+            state = self._begun()
         lab.simulation.running = state.phase == "running"
         self._state = lab.plant = state
 
@@ -170,8 +179,14 @@ class LabPlant(LabDisplay):
     def send(self) -> None:
         pass
 
-    def _begun(self, at_fault: str) -> PlantState:
-        self._wanted, self._stopped = "", None
+    def _begun(self) -> PlantState:
+        """The state once a start that is wanted has begun, unless somebody has stopped it."""
+        with self._lock:
+            at_fault, self._wanted = self._wanted, ""
+            if not at_fault:
+                return self._state
+            self._stopped = None
+            self._state = replace(self._state, phase="starting", at_fault=at_fault, cause=None)
         simulation, choice = self._lab.simulation, self._choice
         now, parameters = self._now, simulation.parameters
         plan = ControllerPlan(
@@ -186,7 +201,7 @@ class LabPlant(LabDisplay):
         )
         self._told = now
         self._coming = self._starts.submit(self._make, plan, choice.address)
-        return replace(self._state, phase="starting", at_fault=at_fault, cause=None)
+        return self._state
 
     def _come(self, coming: Future[ControllerProcess]) -> PlantState:
         """The controller, as soon as it listens."""
@@ -198,6 +213,8 @@ class LabPlant(LabDisplay):
                 raise error
             return self._over(_why(error))
         self._beside, self._sent = coming.result(), self._clock()
+        if self._stopped is not None:
+            return self._followed(self._beside)
         address = _shown(self._beside.address)
         return replace(
             self._state, phase="waiting", address=address, late=0.0, latest=0.0, answered=0

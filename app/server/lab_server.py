@@ -462,6 +462,8 @@ def serve(
         log.info("stopping")
     finally:
         lab.stop()
+        if lab.desk is not None:
+            log.info("the plant's controller has ended")
 
 
 def _end(*_: object) -> None:

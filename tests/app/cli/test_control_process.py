@@ -4,19 +4,24 @@ from __future__ import annotations
 
 import io
 import multiprocessing
+import os
 import re
 import signal
 import socket
 import subprocess
 import sys
+import threading
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import onpath
+from onpath.app.cli.control import ControlCommand
 from onpath.app.cli.driving import Driving, write_log
+from onpath.app.cli.main import run_command
 from onpath.app.common.end_signals import END_SIGNALS
 from onpath.app.plant import controller_process
 from onpath.app.plant.controller_process import ControllerPlan, ControllerProcess
@@ -26,9 +31,12 @@ from onpath.assets import asset_path
 from onpath.models.controller.functions import REFUSALS
 from onpath.models.studies.record_file import log_columns, read_records
 from tests.support.checkout import ROOT
+from tests.support.lab_process import free_ports
+from tests.support.still_arm import StillArm
+from tests.support.waiting import wait_for
 
 pytest.importorskip("mujoco")
-RATE = 50
+RATE, INT = 50, signal.SIGINT
 CODE = {"0": 0, **{f"`{name.upper()}`": number for number, name in enumerate(REFUSALS, 1)}}
 TABLE = (ROOT / "app" / "plant" / "README.md").read_text("utf-8")
 FAULTS = re.findall(r"^\| `(\w+)` \|.*\| (0|`[A-Z_]+`) \|$", TABLE, re.MULTILINE)
@@ -151,3 +159,37 @@ def test_what_is_typed_acts_and_the_log_is_that_of_a_real_arm(
     ((_, record),) = read_records(file, beside.robot, log_columns(beside.robot, {"t": "t_s"}, {}))
     q = np.array(driving.rows)[:, 1:4]
     assert len(record.q) == 120 and np.allclose([record.q[0], record.q[-1]], [q[0], q[-1]])
+
+
+@pytest.mark.usefixtures("forked")
+def test_ctrl_c_ends_a_whole_run(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The plant gets the torque that was chosen until it is silent, and the last line says so."""
+    made = ControlCommand._plan
+    patient = lambda self: replace(made(self), silence=3000, asked=60.0)  # noqa: E731
+    monkeypatch.setattr(ControlCommand, "_plan", patient)
+    monkeypatch.setattr(sys, "stdin", io.StringIO())
+    kept = {number: signal.getsignal(number) for number in END_SIGNALS}
+    arm = StillArm(port := free_ports(1)[0], speed=1.0)
+
+    def press() -> None:
+        with arm:
+            wait_for(lambda: arm.codes and signal.getsignal(INT) is not kept[INT], 60.0)
+            os.kill(os.getpid(), INT)
+            arm.wait_for_an_end()
+            wait_for(lambda: arm.torques[-1].any(), 60.0)  # it damps the motion
+
+    pressing = threading.Thread(target=press, daemon=True)
+    pressing.start()
+    given = ["--robot", "two_link_arm", "--set", "torque_limit=5,control_rate=50"]
+    command = ["control", f"udp://127.0.0.1:{port}", *given, "--at-fault", "damp"]
+    try:
+        assert run_command(command) == 0, capsys.readouterr().err
+    finally:
+        for number, handler in kept.items():
+            signal.signal(number, handler)
+    pressing.join()
+    assert capsys.readouterr().out.strip().endswith("The plant is silent.")
+    first = next(i for i, code in enumerate(arm.codes) if code)
+    assert first > 0 and set(arm.codes[first:]) == {CODE["`STOPPED`"]}

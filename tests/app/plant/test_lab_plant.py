@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from concurrent.futures import wait
+from concurrent.futures import Future, wait
 from dataclasses import dataclass, field
 from types import SimpleNamespace
 from typing import Any, cast
@@ -212,6 +212,8 @@ class Oracle:
             self.followed(now)
         elif self.phase == "starting":
             self.phase, self.sent = "waiting", now
+            if self.why:
+                self.followed(now)
         elif self.wants:
             self.phase, self.cause, self.why, self.ended = "starting", "", "", ""
             self.wants = self.begun = self.gone = self.measured = False
@@ -279,6 +281,24 @@ def test_it_runs_only_as_long_as_everything_is_there(events: list[str]) -> None:
             assert bench.lab.simulation.running == (state.phase == "running")
             assert state.can_start == (not oracle.live and not oracle.sends)
             assert plant_message(state, Words("de")).text
+    bench.plant.close()
+
+
+def test_a_stop_counts_while_a_start_begins(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It comes from another thread than the frame that makes the controller."""
+    bench = Bench()
+
+    def submit(make: Callable[..., Any], *given: Any) -> Future[Any]:
+        bench.plant.stop()
+        made = Future[Any]()
+        made.set_result(make(*given))
+        return made
+
+    monkeypatch.setattr(bench.plant._starts, "submit", submit)
+    bench.plant.start("zero")
+    bench.frame()
+    bench.frame()
+    assert bench.phase == "ended" and bench.beside is None
     bench.plant.close()
 
 
