@@ -190,7 +190,7 @@ def table(results: Results, guesses: Sequence[Guess] = ()) -> str:
     obstructions = list(dict.fromkeys(name for _, name in results))
     lines = [f"{short}: {law}" for law, short in laws.items() if short != law]
     for name, title, cell in (
-        ("max_distance_m", "largest distance to the path, worst place  [mm]", _distance),
+        ("max_distance_m", "largest distance from the path, worst place  [mm]", _distance),
         ("delay_s", "delay at the end, worst place  [s]", _delay),
     ):
         lines += [

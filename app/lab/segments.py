@@ -112,7 +112,7 @@ class Drive:
         state: at the beginning.
         settings: of the loop during the segment.
         frozen: whether it has diverged and stands still.
-        max_distance: largest distance to the path since reset, [m].
+        max_distance: largest distance from the path since reset, [m].
         parameters: with which the robot was made, or None.
     """
 

@@ -9,7 +9,7 @@ robot-follower = Bahnfolger
 robot-tracker = Nachläufer
 robot-under_law = { $robot } ({ $law })
 
-quantity-distance = Abstand zur Bahn
+quantity-distance = Abstand von der Bahn
 quantity-lag = Abstand zum laufenden Punkt
 quantity-speed = Geschwindigkeit längs der Bahn
 quantity-rate = Rate des Bahnparameters
@@ -917,12 +917,12 @@ compare-obstruction = Hindernis
 compare-run = Vergleichen
 compare-count = Wähle ein bis { $most } Regelungen aus.
 compare-law = Regelung
-compare-distance = größter Abstand zur Bahn  [mm]
+compare-distance = größter Abstand von der Bahn  [mm]
 compare-delay = Verspätung am Ende  [s]
 compare-force = größte Kraft  [N]
 compare-stopped = angehalten
 compare-stopped_text = „angehalten“: An mindestens einer Stelle ist die Bewegung divergiert, und die Simulation wurde beendet.
-compare-picture = Größter Abstand zur Bahn über der Verspätung am Ende, für jede Regelung
+compare-picture = Größter Abstand von der Bahn über der Verspätung am Ende, für jede Regelung
 residuals-torque = Drehmoment, gefiltert
 residuals-left = nicht erklärt
 compare-path = Ein Vergleich braucht eine geschlossene Bahn und ein Tempo ungleich 0: Wähle eine solche Bahn und den Auftrag Tempo.
@@ -1900,12 +1900,12 @@ transport-go_on_hint = Verwirft, was danach kam. Taste: G
 
 ## Der Kurs als statische Seiten: assets/web, app/exports/site
 
-symbol-lambda = Abstand zur Bahn, mit Vorzeichen
+symbol-lambda = Abstand von der Bahn, mit Vorzeichen
 symbol-xi_1 = Abstand quer zur Bahn, mit Vorzeichen
 symbol-theta = Stelle des nächsten Punktes auf der Bahn
 symbol-theta_r = Stelle des Punktes der Uhr auf der Bahn
 symbol-e = Folgefehler: vom Punkt der Uhr zur Spitze
-symbol-d = Abstand zur Bahn
+symbol-d = Abstand von der Bahn
 symbol-y = Lage der Spitze
 symbol-sigma = die Bahn
 symbol-N = Einheitsnormale der Bahn
@@ -2224,7 +2224,7 @@ compare-on_left = links
 compare-on_right = rechts
 compare-on_both = auf beiden Seiten
 compare-time = Zeit [s]
-compare-curves = Abstand zur Bahn über der Zeit, wo jede Regelung am schlechtesten ist. Grau: Das Hindernis wirkt.
+compare-curves = Abstand von der Bahn über der Zeit, wo jede Regelung am schlechtesten ist. Grau: Das Hindernis wirkt.
 setup-draw = Zeichnen
 setup-file = Datei…
 setup-file_hint = Eine Zeichnung (SVG), Punkte (CSV) oder G-Code. Alle Linien werden nacheinander gezeichnet.

@@ -11,7 +11,7 @@ robot-follower = Follower
 robot-tracker = Tracker
 robot-under_law = { $robot } ({ $law })
 
-quantity-distance = distance to the path
+quantity-distance = distance from the path
 quantity-lag = distance to the running point
 quantity-speed = speed along the path
 quantity-rate = rate of the path's parameter
@@ -832,12 +832,12 @@ compare-obstruction = Obstruction
 compare-run = Compare
 compare-count = Choose one to { $most } laws.
 compare-law = Law
-compare-distance = largest distance to the path  [mm]
+compare-distance = largest distance from the path  [mm]
 compare-delay = delay at the end  [s]
 compare-force = largest force  [N]
 compare-stopped = stopped
 compare-stopped_text = “stopped”: at one or more of the places, the motion diverged and the simulation was ended.
-compare-picture = Largest distance to the path over delay at the end, for each law
+compare-picture = Largest distance from the path over delay at the end, for each law
 residuals-torque = torque, filtered
 residuals-left = not explained
 compare-path = A comparison needs a closed path and a speed along it other than 0: choose such a path, and the task speed.
@@ -1483,12 +1483,12 @@ transport-go_on_hint = Discards what came after. Key: G
 
 ## The course as a static site: assets/web, app/exports/site
 
-symbol-lambda = signed distance to the path
+symbol-lambda = signed distance from the path
 symbol-xi_1 = signed distance across the path
 symbol-theta = place of the closest point on the path
 symbol-theta_r = place of the clock's point on the path
 symbol-e = tracking error: from the clock's point to the end-point
-symbol-d = distance to the path
+symbol-d = distance from the path
 symbol-y = position of the end-point
 symbol-sigma = the path
 symbol-N = unit normal of the path
@@ -1807,7 +1807,7 @@ compare-on_left = on the left
 compare-on_right = on the right
 compare-on_both = on both
 compare-time = time [s]
-compare-curves = Distance to the path over time, where each law is worst. Grey: the obstruction acts.
+compare-curves = Distance from the path over time, where each law is worst. Grey: the obstruction acts.
 setup-draw = Draw
 setup-file = File…
 setup-file_hint = A drawing (SVG), points (CSV) or G-code. All its lines are drawn, one after the other.
