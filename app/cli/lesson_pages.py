@@ -53,7 +53,8 @@ class WriteWorksheet:
     lesson: Annotated[str, tyro.conf.Positional] = ""
     """Name or number of the lesson."""
     all: Path | None = None
-    """Write the worksheets and keys of all lessons as pages into this folder instead."""
+    """Write the worksheets and keys of all lessons as pages into this folder instead, which is made
+    if need be."""
     html: Path | None = None
     """Write a page that prints as A4."""
     pdf: Path | None = None
@@ -89,9 +90,8 @@ class WriteWorksheet:
 
         if is_of_one:
             raise ValueError("--all: the folder gets all lessons; name neither one nor files")
-        if not into.is_dir():
-            raise ValueError(f"--all {into}: there is no such folder")
         course, folder, words = _course(self.lessons, self.language)
+        into.mkdir(exist_ok=True)
         made = {
             name: worksheet(course, folder, name, words, self.variant) for name in course.lessons
         }

@@ -11,8 +11,11 @@ from pathlib import Path
 
 from onpath.app.common.templates import render
 from onpath.app.exports.course_material import AskedBlock, taught_lesson
+from onpath.app.view.lessons import route_stops
 from onpath.lessons.concept_test.concept_test import FORMS
+from onpath.lessons.concept_test.titles import titles_of_tests
 from onpath.lessons.course import Course
+from onpath.lessons.minutes import lesson_minutes
 from onpath.lessons.option_order import LETTERS, option_order
 from onpath.lessons.schema import Choice, Option, Quiz
 from onpath.lessons.words import Words
@@ -36,6 +39,10 @@ def guide(
     return render(
         "guide/guide.html",
         lessons=lessons,
+        routes=[(route, route_stops(route, course, words)) for route in course.routes.values()],
+        lecture=bool(course.lecture),
+        tests=list(titles_of_tests(course, words).values()),
+        test_minutes=lesson_minutes(forms[0])[0] if forms else 0,
         forms=list(zip(FORMS, forms, strict=False)) if test else [],
         apart=bool(forms) and whole and not test,
         numbers=course.numbers(),

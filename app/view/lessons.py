@@ -6,10 +6,12 @@ from onpath.app.channel.sheet_messages import LessonCard, LessonSheet, RouteCard
 from onpath.app.lab.lesson_state import LessonState
 from onpath.lessons.concept_test.concept_test import AFTER, BEFORE, sitting_of, taken
 from onpath.lessons.concept_test.titles import titles_of_tests
+from onpath.lessons.course import Course
 from onpath.lessons.minutes import lesson_minutes
 from onpath.lessons.progress import Notes
 from onpath.lessons.routes import Route
 from onpath.lessons.schema import Lesson
+from onpath.lessons.words import Words
 
 
 def lesson_sheet(run: LessonState) -> LessonSheet:
@@ -79,30 +81,30 @@ def _route_card(name: str, route: Route, run: LessonState) -> RouteCard:
         title=route.text(route.title, language),
         summary=route.text(route.summary, language),
         minutes=run.words("lesson.minutes", minutes=f"{route.minutes:g}"),
-        stops=route_stops(route, run),
+        stops=route_stops(route, run.course, run.words),
     )
 
 
-def route_stops(route: Route, run: LessonState) -> list[str]:
+def route_stops(route: Route, course: Course, words: Words) -> list[str]:
     """The stops of a route with their times, between the tests if it has them."""
-    words, numbers = run.words, run.course.numbers()
+    numbers = course.numbers()
     stops = list[str]()
     for stop in route.stop:
-        title = run.course.lesson(stop.lesson, words.language).front.title
+        title = course.lesson(stop.lesson, words.language).front.title
         first, last = stop.steps
         lesson = f"{numbers[stop.lesson]}. {title}"
         minutes = f"{stop.minutes:g}"
         stops.append(words("route.stop", lesson=lesson, first=first, last=last, minutes=minutes))
-    if not (route.test and run.course.tests):
+    if not (route.test and course.tests):
         return stops
-    titles = titles_of_tests(run.course, words).items()
-    before, after = (_test_stop(name, title, run) for name, title in titles)
+    titles = titles_of_tests(course, words).items()
+    before, after = (_test_stop(name, title, course, words) for name, title in titles)
     return [before, *stops, after]
 
 
-def _test_stop(name: str, title: str, run: LessonState) -> str:
-    minutes, _ = lesson_minutes(run.course.lesson(name, run.words.language))
-    return f"{title}, {run.words('lesson.minutes', minutes=minutes)}"
+def _test_stop(name: str, title: str, course: Course, words: Words) -> str:
+    minutes, _ = lesson_minutes(course.lesson(name, words.language))
+    return f"{title}, {words('lesson.minutes', minutes=minutes)}"
 
 
 def route_line(run: LessonState) -> str:

@@ -203,7 +203,7 @@ def test_lessons_of_ones_own_have_a_guide_and_a_worksheet(tmp_path: Path) -> Non
         assert "<script" not in page and "&lt;script&gt;" in page and "default-src 'none'" in page
     assert files[0].read_text(encoding="utf-8").count("<article") == 4
     assert 'lang="de"' in files[1].read_text(encoding="utf-8")
-    (into := tmp_path.with_name(f"{tmp_path.name}-sheets")).mkdir()
+    into = tmp_path.with_name(f"{tmp_path.name}-sheets")
     assert run_command(["lessons", "worksheet", "--all", str(into), *sheets[4:], *own]) == 0
     written = {file.name: file.read_bytes() for file in into.iterdir()}
     assert written == {
@@ -222,7 +222,7 @@ def test_lessons_of_ones_own_have_a_guide_and_a_worksheet(tmp_path: Path) -> Non
         (["worksheet", "99", "--html", "{}"], "unknown lesson '99'"),
         (["worksheet", "--html", "{}"], "which lesson"),
         (["worksheet", "1", "--all", "."], "name neither one nor files"),
-        (["worksheet", "--all", "{}"], "no such folder"),
+        (["worksheet", "--all", "/none/sheets"], "No such file"),
         (["guide", "--language", "xx", "--html", "{}"], "there are de, en"),
     ],
 )
