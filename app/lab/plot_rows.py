@@ -16,6 +16,7 @@ XI = ("xi", "xi_rate")
 """Fields whose unit is another one with a level set."""
 ALWAYS = ("distance", "theta", "theta_ref", "y", "force")
 """Fields that every frame of the data channel has; see app/channel/data_frame.py."""
+TORQUE = "N m"
 AREA = 100.0  # a level set is 100 mm² where the distance to a circle of 50 mm is 1 mm
 
 Fields = tuple[tuple[str, int], ...]
@@ -111,7 +112,11 @@ def rounding(field: str, is_level_set: bool) -> float:
 
 
 def row_data(
-    fields: Fields, is_level_set: bool, words: Words, guesses: Sequence[Guess] = ()
+    fields: Fields,
+    is_level_set: bool,
+    words: Words,
+    guesses: Sequence[Guess] = (),
+    motors: Sequence[str] = (TORQUE,),
 ) -> list[dict[str, Any]]:
     """The rows that a robot can have, for a page; see `RowData` in assets/web/core/engine.ts.
 
@@ -119,8 +124,9 @@ def row_data(
         fields: that are stored of the robot.
         is_level_set: whether ξ₁ is an area, [m²], instead of a distance.
         guesses: about the robot; rows that rest on them are marked.
+        motors: their units, see `MechanicalSystem.motor_units`.
     """
-    plain = _rows(fields, is_level_set, words)
+    plain = _rows(fields, is_level_set, words, frozenset(motors))
     if not guesses:
         return plain
     names = {row.name: "tau" if row.field == "u" else row.field for row in ROWS}
@@ -131,20 +137,28 @@ def row_data(
 
 
 @lru_cache(maxsize=64)
-def _rows(fields: Fields, is_level_set: bool, words: Words) -> list[dict[str, Any]]:
+def _rows(
+    fields: Fields, is_level_set: bool, words: Words, motors: frozenset[str]
+) -> list[dict[str, Any]]:
     sizes = dict(fields)
-    return [
+    rows = [
         _data(row, min(sizes[row.field], MOST_LINES), is_level_set and row.field in XI, words)
         for row in ROWS
         if row.field in sizes
     ]
+    if motors == {TORQUE}:
+        return rows
+    kind = "mixed" if TORQUE in motors else "forces"
+    label, unit = _title(words(f"axis.{kind}"))
+    pushed = {"menu": words(f"plot.{kind}"), "label": label, "unit": unit}
+    return [{**row, **pushed} if row["name"] == "torques" else row for row in rows]
 
 
 def _data(row: PlotRow, size: int, is_area: bool, words: Words) -> dict[str, Any]:
     if is_area:  # only the first line: the others have another unit
         size = 1
     kind = "-level_set" if is_area else "-space" if row.field in XI and size > 1 else ""
-    label, unit = words(f"axis.{row.name}{kind}").removesuffix("]").rsplit(" [", 1)
+    label, unit = _title(words(f"axis.{row.name}{kind}"))
     symbols: Sequence[str] = row.symbols[:size] if size > 1 else ("",)
     lines = [{"field": row.field, "at": i, "name": name} for i, name in enumerate(symbols)]
     if row.beside is not None:
@@ -153,7 +167,7 @@ def _data(row: PlotRow, size: int, is_area: bool, words: Words) -> dict[str, Any
     return {
         "name": row.name,
         "menu": words(f"plot.{row.name}"),
-        "label": _begun(label),
+        "label": label,
         "unit": unit,
         "scale": row.scale**2 if is_area else row.scale,
         "least": [AREA * limit if is_area else limit for limit in row.least],
@@ -162,6 +176,7 @@ def _data(row: PlotRow, size: int, is_area: bool, words: Words) -> dict[str, Any
     }
 
 
-def _begun(label: str) -> str:
-    """A label that begins with a capital letter, unless it begins with a symbol."""
-    return label[0].upper() + label[1:] if label[0].isascii() else label
+def _title(axis: str) -> tuple[str, str]:
+    """Label and unit of an axis. The label begins with a capital letter, unless with a symbol."""
+    label, unit = axis.removesuffix("]").rsplit(" [", 1)
+    return label[0].upper() + label[1:] if label[0].isascii() else label, unit

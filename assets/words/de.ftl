@@ -866,6 +866,8 @@ plot-phase_name = Phasenebene: ξ₂ über ξ₁ beider Roboter in den letzten 3
 plot-distance = Abstand von der Bahn
 plot-speed = Geschwindigkeit längs der Bahn
 plot-torques = Drehmomente
+plot-forces = Kräfte der Motoren
+plot-mixed = Drehmomente und Kräfte der Motoren
 plot-across = ξ₁ quer
 plot-across_rate = ξ₂ Rate quer
 plot-place = η₂¹ = θ Ort längs
@@ -878,6 +880,8 @@ plot-force = Kraft
 axis-distance = Abstand von der Bahn [mm]
 axis-speed = Geschwindigkeit [mm/s]
 axis-torques = Drehmoment [N m]
+axis-forces = Kraft eines Motors [N]
+axis-mixed = Drehmoment oder Kraft eines Motors [N m, N]
 axis-across = ξ₁ [mm]
 axis-across-space = ξ₁, ξ₃ [mm]
 axis-across_rate = ξ₂ [mm/s]

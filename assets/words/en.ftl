@@ -781,6 +781,8 @@ plot-phase_name = Phase plane: ξ₂ over ξ₁ of both robots in the last 3 sec
 plot-distance = distance from the path
 plot-speed = speed along the path
 plot-torques = torques
+plot-forces = forces of the motors
+plot-mixed = torques and forces of the motors
 plot-across = ξ₁ across
 plot-across_rate = ξ₂ rate across
 plot-place = η₂¹ = θ place along
@@ -793,6 +795,8 @@ plot-force = force
 axis-distance = distance from the path [mm]
 axis-speed = speed [mm/s]
 axis-torques = torque [N m]
+axis-forces = force of a motor [N]
+axis-mixed = torque or force of a motor [N m, N]
 axis-across = ξ₁ [mm]
 axis-across-space = ξ₁, ξ₃ [mm]
 axis-across_rate = ξ₂ [mm/s]

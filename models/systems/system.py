@@ -82,6 +82,14 @@ class MechanicalSystem:
         object.__setattr__(self, "p", self.output.numel())
 
     @property
+    def motor_units(self) -> tuple[str, ...]:
+        """The unit of each input, m times "N m" or "N": the latter if it pushes along a coordinate
+        that is a length."""
+        along = [i for i, name in enumerate(self.coordinate_names) if name.endswith("_m")]
+        turns = [all(self.actuation[i, j].is_zero() for i in along) for j in range(self.m)]
+        return tuple(["N m" if turn else "N" for turn in turns])
+
+    @property
     def joints(self) -> int:
         """Number of coordinates that encoders measure, the first of q."""
         return self.n - self.modes

@@ -128,6 +128,7 @@ def common_data(figure: FigureChoice, words: Words, numbers: Mapping[str, Any]) 
             figure.parameters.across == LEVEL_SET,
             words,
             figure.entry.guesses,
+            robot.system.motor_units,
         ),
         "logged": numbers["logged"],
         "efforts": _efforts(robot),

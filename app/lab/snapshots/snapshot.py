@@ -204,6 +204,7 @@ class PageKey:
     Attributes:
         robot: name of the robot.
         fields: names and sizes of the plotted fields; see `app.lab.plot_samples`.
+        motors: units of its motors; see `MechanicalSystem.motor_units`.
         language: of the interface and the texts.
         in_lesson: whether a lesson is open.
         presenting: whether large type for a projector is on.
@@ -214,6 +215,7 @@ class PageKey:
 
     robot: str = "five_bar"
     fields: tuple[tuple[str, int], ...] = ()
+    motors: tuple[str, ...] = ("N m",)
     language: str = "en"
     in_lesson: bool = False
     presenting: bool = False

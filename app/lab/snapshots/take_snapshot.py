@@ -200,6 +200,7 @@ def _page_key(
     return PageKey(
         robot=name,
         fields=sample_layout(robot).fields,
+        motors=robot.system.motor_units,
         language=language,
         in_lesson=in_lesson,
         presenting=presenting,

@@ -27,6 +27,19 @@ def test_nothing_is_wrong_with_a_sound_robot(entry: RobotEntry) -> None:
     assert faults_of(entry) == []
 
 
+@pytest.mark.parametrize("entry", [*ROBOTS.values(), CRANE], ids=lambda entry: entry.name)
+def test_a_motor_in_newtons_works_where_a_length_changes_and_no_other_does(
+    entry: RobotEntry,
+) -> None:
+    """Its power is u times the rate B(q)^T v, which is a speed in m/s for a force."""
+    parameters = entry.parameters()
+    robot = entry.make(parameters)
+    system, q = robot.system, robot.rest(np.zeros(robot.system.p))
+    along = ca.DM([float(name.endswith("_m")) for name in system.coordinate_names])
+    rates = ca.evalf(system.input_rates(ca.SX(q), ca.SX(along), ca.SX(robot.plant(parameters))))
+    assert ["N" if rate else "N m" for rate in rates.full()[:, 0]] == [*system.motor_units]
+
+
 def test_where_its_zero_dynamics_change_is_that_of_the_closed_form() -> None:
     robot = CRANE.make(CRANE.parameters())
     rest = robot.rest(np.zeros(3))
