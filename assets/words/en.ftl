@@ -614,7 +614,7 @@ laws-own_left = Own law of the left robot
 laws-own_right = Own law of the right robot
 laws-own_hint = Enter uses the law; Shift and Enter begin a new line
 laws-about = About the laws
-laws-bounds = Every law's integral is limited: K3 moves the balance by at most { $reach } mm, and in a bend by half of its radius, so that no hand can wind it up. Laws that follow the path by its closest point return straight to it, with K1 and K2 alone, where that point is not to be trusted: half of the radius of curvature away on the inner side, fully from four fifths on, where it or the path’s direction there turns 0.15 to 0.3 rad more than wanted in the time from measurement to torque, and 5 to 20 mm past an open end.
+laws-bounds = Every law's integral is limited: K3 shifts the equilibrium by at most { $reach } mm, and in a bend by half of its radius, so that no hand can wind it up. Laws that follow the path by its closest point return straight to it, with K1 and K2 alone, where that point is not to be trusted: half of the radius of curvature away on the inner side, fully from four fifths on, where it or the path’s direction there turns 0.15 to 0.3 rad more than wanted in the time from measurement to torque, and 5 to 20 mm past an open end.
 laws-source = Source: { $source }
 laws-own_text = A line across = … gives the acceleration across the path in m/s², a line along = … that along it in rad/s²; or u1 = …, u2 = … give the torques of all motors in N m.
 laws-own_space = On a robot that moves in space, across2 = … is the acceleration along the second normal.
