@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -105,6 +105,13 @@ ASKED = tuple(row.field for row in ROWS if row.field not in ALWAYS)
 _OF_FIELD = {row.field: row for row in ROWS}
 
 
+def motor_row(motors: Collection[str]) -> str:
+    """What the row of the motors is called, by their units: "torques", "forces" or "mixed"."""
+    if TORQUE not in motors:
+        return "forces"
+    return "mixed" if len(set(motors)) > 1 else "torques"
+
+
 def rounding(field: str, is_level_set: bool) -> float:
     """How many units of the data channel an SI unit of a field has."""
     row = _OF_FIELD[field]
@@ -146,9 +153,9 @@ def _rows(
         for row in ROWS
         if row.field in sizes
     ]
-    if motors == {TORQUE}:
+    kind = motor_row(motors)
+    if kind == "torques":
         return rows
-    kind = "mixed" if TORQUE in motors else "forces"
     label, unit = _title(words(f"axis.{kind}"))
     pushed = {"menu": words(f"plot.{kind}"), "label": label, "unit": unit}
     return [{**row, **pushed} if row["name"] == "torques" else row for row in rows]

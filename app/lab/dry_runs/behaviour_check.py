@@ -15,6 +15,7 @@ from onpath.app.lab.dry_runs.run_samples import Samples
 from onpath.app.lab.dry_runs.stated_check import measured, run_of, why
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.loops.loop_cache import LoopCache
+from onpath.app.lab.plot_rows import motor_row
 from onpath.app.lab.setups.setup import Setup
 from onpath.app.lab.setups.step_setup import setup_of
 from onpath.lessons.action_schema import Script, StepSetup
@@ -164,9 +165,11 @@ def page_faults(lesson: Lesson, text: str) -> Iterator[tuple[int, str]]:
     Args:
         text: of the lesson's file.
     """
-    words = Words(lesson.language)
+    words, robot = Words(lesson.language), lesson.front.robot
     for index, said in _behaviours(lesson):
-        if said.verb in OF_PAGE and (fault := page_fault(said, lesson.scene_at(index), words)):
+        if said.verb not in OF_PAGE:
+            continue
+        if fault := page_fault(said, lesson.scene_at(index), words, robot):
             yield said.line, f"{said.text!r}: {fault}"
     yield from name_faults(text, lesson.language)
 
@@ -208,8 +211,12 @@ def played_fault(said: Behaviour, seen: Played) -> str:
     return f"the reason is another one; {heard}" if said.reason not in {"", *seen.said} else ""
 
 
-def page_fault(said: Behaviour, scene: StepSetup, words: Words) -> str:
-    """How the page differs from what is said; empty if it does not."""
+def page_fault(said: Behaviour, scene: StepSetup, words: Words, robot: str = "five_bar") -> str:
+    """How the page differs from what is said; empty if it does not.
+
+    Args:
+        robot: if the scene names none.
+    """
     written = re.sub(r"[*_“”„\"]", "", said.text).strip(" .,:")
     if said.verb == "label":
         labels = labels_of(said.name, words)
@@ -218,7 +225,11 @@ def page_fault(said: Behaviour, scene: StepSetup, words: Words) -> str:
     if (said.name in shown) == said.absent:
         return f"the {said.verb}s of the step are {_listed(shown)}"
     if said.verb == "plot" and not said.absent:
-        label = words("plot.phase" if said.name == "phase" else f"axis.{said.name}")
+        name = said.name
+        if name == "torques":
+            entry = ROBOTS[scene.robot or robot]
+            name = motor_row(entry.make(entry.parameters()).system.motor_units)
+        label = words("plot.phase" if name == "phase" else f"axis.{name}")
         if not any(word in written.lower() for word in _stems(label)):
             return f"the plot is called {label!r}"
     if said.verb == "control" and not any(
