@@ -13,7 +13,7 @@ ROWS: tuple[tuple[str, str, Callable[[float], str]], ...] = (
     ("max_distance_m", "max distance", lambda v: f"{v * 1e3:.2f} mm"),
     ("max_distance_while_held_m", "max distance while held", lambda v: f"{v * 1e3:.2f} mm"),
     ("rms_distance_m", "rms distance", lambda v: f"{v * 1e3:.3f} mm"),
-    ("final_speed_rad_s", "final speed", lambda v: f"{v + 0.0:.3f} rad/s"),
+    ("final_speed_rad_s", "final speed", lambda v: f"{round(v, 3) + 0.0:.3f} rad/s"),
     ("max_torque_Nm", "max torque", lambda v: f"{v:.3f} N m"),
     ("stopped_at_s", "stopped at", lambda v: f"{v:.3f} s"),
 )
