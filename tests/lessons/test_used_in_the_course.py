@@ -11,6 +11,7 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.view.lesson_view import LessonView
+from onpath.lessons.minutes import word_count
 from onpath.lessons.schema import Choice, Lesson, NumberQuestion, Quiz, Step, Text
 from onpath.lessons.task_schema import Event, Order, Setting, Task
 from onpath.models.systems.catalogue import FIVE_BAR
@@ -45,6 +46,24 @@ def test_every_run_says_what_to_watch_and_not_what_happens() -> None:
         assert len(told.split()) < 40
         units = re.findall(r"\d (?:mm|N|mJ|%)", told)
         assert units == [], (lesson.name, lesson.language, step.title)
+
+
+TOUCH = {
+    "en": r"\b(?:Press|Pull|Drag|Set|Put|Move|Send|Take|Turn)\b",
+    "de": r"\b(?:Drücke|Ziehe?|Stelle|Setze?|Bewege|Schicke|Nimm|Schalte)\b",
+}
+"""Words that tell a student to do something in the lab."""
+OPENING = 60
+"""Most words of a lesson before the first of them."""
+
+
+@pytest.mark.parametrize("lesson", VERSIONS, ids=lambda each: f"{each.name} {each.language}")
+def test_a_lesson_opens_with_a_thing_to_touch(lesson: Lesson) -> None:
+    first = lesson.steps[0]
+    text = " ".join(block.html for block in first.blocks if isinstance(block, Text))
+    found = re.search(TOUCH[lesson.language], text)
+    assert first.scene is not None and first.scene.controls
+    assert found is not None and word_count(text[: found.start()]) <= OPENING
 
 
 def test_the_right_options_are_neither_mostly_the_longest_nor_mostly_at_one_place() -> None:
