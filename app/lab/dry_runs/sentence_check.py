@@ -78,7 +78,7 @@ def _texts(course: Course, folder: Path) -> Iterator[tuple[tuple[str, str], tupl
     for home in dict.fromkeys(homes):
         for file in sorted((folder / home).glob("??.md")):
             yield (home, file.stem), (str(file), read_text(file))
-    if folder != BUILT_IN:
+    if folder.resolve() != BUILT_IN.resolve():
         return
     if README.exists():
         yield (README.name, "en"), (str(README), read_text(README))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
@@ -51,7 +52,8 @@ def faults(name: str) -> list[tuple[int, str]]:
 
 def listed_faults() -> list[str]:
     """What is wrong with the sentences of the list, and with those that are not in it."""
-    return [str(each) for each in sentence_faults(COURSE, BUILT_IN, loop_cache())]
+    folder = Path(os.path.relpath(BUILT_IN))  # however the folder is named
+    return [str(each) for each in sentence_faults(COURSE, folder, loop_cache())]
 
 
 NUMBERS = [name.partition("-")[0] for name in COURSE.lessons]
