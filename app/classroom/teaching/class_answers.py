@@ -27,7 +27,7 @@ from onpath.app.classroom.teaching.lesson_labels import step_label
 from onpath.app.classroom.teaching.steps_for_all import StepsForAll
 from onpath.app.classroom.teaching.teacher_context import TeacherChoices
 from onpath.app.lab.dry_runs.step_truth import computed_truth
-from onpath.lessons.concept_test.concept_test import FORMS, SITTINGS, sitting_of
+from onpath.lessons.concept_test.concept_test import FORMS, SITTINGS
 from onpath.lessons.course import Course
 from onpath.lessons.given import Given
 from onpath.lessons.kept.known_choices import of_today
@@ -124,7 +124,7 @@ class ClassAnswers:
             return self._asked(lesson, index, large)
         students = self._students()
         if name in self._course.tests:
-            return self._test(lesson, index, students, large)
+            return self._test(index, students, large)
         views = list[str]()
         for item, block in asked_at(lesson, index).items():
             if isinstance(block, Quiz | NumberQuestion):
@@ -242,9 +242,9 @@ class ClassAnswers:
             return None, ""
         return (ceil(left), "") if left > 0 else (None, self._words("class.closed"))
 
-    def _test(self, test: Lesson, index: int, students: Students, large: bool) -> str:
-        """A question of the test in each of its forms, answered before and after the course, and
-        the class's gain."""
+    def _test(self, index: int, students: Students, large: bool) -> str:
+        """The class's gain, and a question of the test in each of its forms, answered before and
+        after the course. How many have handed in is said with the gain."""
         words, display, forms = self._words, self._display, self._course.forms(self._words.language)
         known = list(zip(students.who, students.progress, strict=True))
         views = [gain_view(forms, known, display.revealed, words, large)]
@@ -259,8 +259,7 @@ class ClassAnswers:
             if display.shown:
                 shown = page.choices_view(question, rounds, display.revealed, words, large)
             else:
-                now = rounds[SITTINGS.index(sitting_of(test.name))][1]
-                shown = page.hidden_view(question, now, words, large)
+                shown = page.hidden_view(question, None, words, large)
             views.append(shown)
         return "".join(views)
 
