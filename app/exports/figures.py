@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.transforms import ScaledTranslation
 
 from onpath.app.common.palette import INK, Colour, of_law
+from onpath.app.lab.plot_rows import motor_row
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.closed_loop.trajectory import Trajectory
 from onpath.models.robot_files.guesses import Guess
@@ -51,7 +52,8 @@ def draw_experiment(experiment: Experiment, runs: list[Trajectory], path: Path) 
 def experiment_figure(experiment: Experiment, runs: list[Trajectory]) -> Figure:
     """Plot the end-point in output space, and distance, xi, eta, speed and torque over time."""
     level_set = any(run.level_set for run in runs)
-    panels = panels_of(level_set=level_set, guesses=experiment.entry.guesses)
+    motors = experiment.robot().system.motor_units
+    panels = panels_of(level_set=level_set, guesses=experiment.entry.guesses, motors=motors)
     panels[1:1] = _extra_panels(experiment)
     figure = ShownFigure(figsize=(13, 2.1 * len(panels)), layout="constrained")
     axes = figure.subplot_mosaic([["space", name] for name, _, _ in panels], width_ratios=(1, 1.25))
@@ -82,15 +84,20 @@ def without_math(name: str) -> str:
 
 
 def panels_of(
-    words: Words = ENGLISH, level_set: bool = False, guesses: Sequence[Guess] = ()
+    words: Words = ENGLISH,
+    level_set: bool = False,
+    guesses: Sequence[Guess] = (),
+    *,
+    motors: Sequence[str],
 ) -> list[tuple[str, str, Quantity]]:
     """Axes name, label and quantity of each panel, from top to bottom.
 
     Args:
         level_set: whether the first component of xi is in [m²].
         guesses: about the robot; what rests on them is marked.
+        motors: their units, see `MechanicalSystem.motor_units`.
     """
-    panels = _panels(words, level_set)
+    panels = _panels(words, level_set, motors)
     return [(name, _marked(name, label, guesses, words), of) for name, label, of in panels]
 
 
@@ -100,14 +107,16 @@ def _marked(name: str, label: str, guesses: Sequence[Guess], words: Words) -> st
     return f"{label}\n{marked.strip()}" if marked else label
 
 
-def _panels(words: Words, level_set: bool) -> list[tuple[str, str, Quantity]]:
+def _panels(
+    words: Words, level_set: bool, motors: Sequence[str]
+) -> list[tuple[str, str, Quantity]]:
     xi = r"$\xi_1=s(y)$  [mm$^2$]" if level_set else r"$\xi_1$  [mm]"
     return [
         ("distance", words("figure.distance"), lambda r: (1e3 * r.distance[:, None],)),
         ("xi", xi, lambda r: (_shown_xi(r, level_set),)),
         ("eta1", r"$\eta_2^1=\theta$  [rad]", lambda r: (_wrapped(r.fields["theta"]),)),
         ("eta2", r"$\eta_2^2=\dot\theta$  [rad/s]", lambda r: (r.fields["theta_rate"],)),
-        ("u", words("figure.torque"), lambda r: (r.fields["u"],)),
+        ("u", words(f"figure.{motor_row(motors)}"), lambda r: (r.fields["u"],)),
     ]
 
 

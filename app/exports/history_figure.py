@@ -81,7 +81,8 @@ def history_figure(
     every = [run for parts in runs.values() for run in parts]
     level_set = any(run.level_set for run in every)
     entry = ROBOTS[robot]
-    panels = panels_of(words, level_set, entry.guesses)
+    motors = entry.make(parameters or entry.parameters()).system.motor_units
+    panels = panels_of(words, level_set, entry.guesses, motors=motors)
     figure = Figure(figsize=(11, 2.3 * len(panels) + 0.6), layout="constrained")
     axes = figure.subplots(len(panels), 1, sharex=True)
     for axis, (name, label, column) in zip(axes, panels, strict=True):

@@ -956,11 +956,13 @@ figure-law = Wechsel des Regelgesetzes
 figure-held = festgehalten
 figure-film = Einstellungen und Verläufe
 figure-distance =
-    Abstand zur
-    Bahn  [mm]
-figure-torque =
+    Abstand von
+    der Bahn  [mm]
+figure-torques =
     Drehmoment $u$
     { "[" }N m]
+figure-forces = Kraft $u$  [N]
+figure-mixed = $u$  [N m, N]
 
 ## Tasten und Hilfe
 

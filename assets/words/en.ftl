@@ -871,9 +871,11 @@ figure-law = change of law
 figure-held = held back
 figure-film = Settings and plots
 figure-distance =
-    distance to
+    distance from
     the path  [mm]
-figure-torque = torque $u$  [N m]
+figure-torques = torque $u$  [N m]
+figure-forces = force $u$  [N]
+figure-mixed = $u$  [N m, N]
 
 ## Keys and help
 

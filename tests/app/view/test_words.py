@@ -87,7 +87,7 @@ KEYS_MADE = (
     *("side.", "laws.", "obstruction.", "aim.", "key.", "keyname.", "pull.", "plot.", "axis."),
     *("check.above", "check.below", "gains.across", "gains.along"),
     *("lesson.back", "lesson.again", "lesson.close", "site.control.", "symbol.", "show."),
-    *("standalone.recorded_", "arena.", "site.why."),
+    *("standalone.recorded_", "arena.", "site.why.", "figure."),
     *("search.kind_", "search.of_", "aid.", "robots.differs_", "export.", "form."),
     *ELSEWHERE,
 )
