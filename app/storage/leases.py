@@ -24,8 +24,8 @@ import sqlalchemy as sa
 
 from onpath.app.storage.schema import classes, labs, leases
 
-LEASE = 2.0  # [s] for which a lease holds after its last renewal
-RENEWAL = 0.5  # [s] between renewals
+LEASE = 1.0  # [s] for which a lease holds after its last renewal
+RENEWAL = 0.25  # [s] between renewals
 CLOCK_BACK = 60.0  # [s] beyond the possible end from which a lease shows a clock set back
 
 _mine = leases.c.owner == sa.bindparam("own")
