@@ -48,7 +48,7 @@ class WriteGuide:
 
 @dataclass(frozen=True)
 class WriteWorksheet:
-    """Write a lesson's worksheet, two pages with axes to draw on, and its key."""
+    """Write a lesson's worksheet, with axes to draw on and room to write, and its key."""
 
     lesson: Annotated[str, tyro.conf.Positional] = ""
     """Name or number of the lesson."""

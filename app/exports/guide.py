@@ -55,7 +55,7 @@ def guide(
 def worksheet(
     course: Course, folder: Path, name: str, words: Words, variant: int = 1
 ) -> tuple[str, str]:
-    """A lesson's worksheet of two pages, and its key, as standalone pages.
+    """A lesson's worksheet and its key, as standalone pages.
 
     Args:
         variant: decides the order of options, see `option_order`; 0: the author's.

@@ -25,12 +25,13 @@ if TYPE_CHECKING:
 PAGE = re.compile(rb"/Type\s*/Page\b")
 
 
-def test_every_worksheet_has_two_pages(browser: Browser) -> None:
+def test_every_worksheet_fits_on_two_sheets_of_paper(browser: Browser) -> None:
     course, _ = built_in_course()
     page = browser.new_page()
     for name, language in product(course.lessons, languages()):
         page.set_content(worksheet(course, BUILT_IN, name, Words(language))[0])
-        assert len(PAGE.findall(page.pdf(prefer_css_page_size=True))) == 2, (name, language)
+        count = len(PAGE.findall(page.pdf(prefer_css_page_size=True)))
+        assert 2 <= count <= 4, (name, language)
     page.close()
 
 
