@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 from collections.abc import Callable
 from concurrent.futures import Future, wait
 from dataclasses import dataclass, field
@@ -14,9 +15,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from onpath.app.channel.plant_messages import DrivePlant
+from onpath.app.channel.reading import NoPageMessage, read_message
 from onpath.app.lab import commands as c
-from onpath.app.lab.lab import Lab
-from onpath.app.lab.plant_state import SIDE
+from onpath.app.lab.lab import Command, Lab
+from onpath.app.lab.plant_state import SIDE, settable
 from onpath.app.plant.controller_process import Address, ControllerPlan, ControllerProcess
 from onpath.app.plant.datagrams import Measured, measurement, torque_in
 from onpath.app.plant.lab_plant import LOST, SILENT, LabPlant, PlantChoice
@@ -25,11 +27,12 @@ from onpath.app.server.plant_desk import PlantDesk
 from onpath.app.server.visit import Visit
 from onpath.app.view.plant import plant_message
 from onpath.lessons.words import Words
-from onpath.models.control.settable import value_of
+from onpath.models.control.settable import value_of, values_of
 from onpath.models.control.sides import LEFT
 from onpath.models.errors import Message
 from onpath.models.paths.curves import circle
 from onpath.models.systems.catalogue import ROBOTS
+from tests.bench.hostile_messages import wild_message
 from tests.support.lab import FRAME, do, loop_cache
 
 CHOICE = PlantChoice(
@@ -327,6 +330,37 @@ def test_what_is_set_in_the_lab_is_set_there_or_taken_back() -> None:
     bench.frame()
     assert simulation.editor.design is design and "another controller" in bench.lab.message
     assert value_of(simulation.parameters, "K1") == 49.0
+    bench.plant.close()
+
+
+def test_no_message_does_what_cannot_be_done_to_an_arm() -> None:
+    """Whatever the page that drives sends: the plant runs on, and only what may be set changes."""
+    bench, draw, refused = Bench(), random.Random(1), 0
+    simulation = bench.lab.simulation
+    bench.run()
+    before, began = values_of(simulation.parameters), simulation.time
+    for _ in range(150):
+        try:
+            message = read_message(str(wild_message(draw)))
+        except NoPageMessage:
+            continue
+        if isinstance(message, Command):
+            bench.lab.show_message("")
+            do(bench.lab, message)
+            refused += bench.lab.message == str(Message("plant.cannot"))
+        assert bench.beside is not None
+        bench.beside.measures()
+        bench.plant.beat()
+        time = simulation.time
+        bench.frame()
+        assert bench.phase == "running" and bench.beside.answer is not None
+        assert bench.beside.answer[1] == 0 and simulation.time > time
+    assert refused > 25 and simulation.time > began
+    after = values_of(simulation.parameters)
+    changed = [name for name, value in after.items() if value != before[name]]
+    assert all(settable(name, simulation.parameters) for name in changed)
+    assert simulation.entry.name == "two_link_arm" and simulation.measured == SIDE
+    assert simulation.chosen_laws[SIDE] in CHOICE.laws
     bench.plant.close()
 
 
