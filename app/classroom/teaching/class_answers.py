@@ -62,6 +62,10 @@ class VotedQuestion:
     block: Asked
     votes: tuple[Vote | None, ...]
 
+    def last(self, first: Given | None, second: Given | None) -> Given | None:
+        """The answer that counts now; a second vote begins without any."""
+        return first if self.votes[1] is None else second
+
 
 class AnswersContext(Protocol):
     """What the answers need of where they are shown; a `TeacherContext` has it."""
@@ -161,8 +165,8 @@ class ClassAnswers:
         """What each student who is here has done, in order of joining."""
         asked, states = self._first_question(), list[page.State]()
         for first, second in self._answers_here(asked, students):
-            last = second or first
-            if asked is None or last is None or last.is_skipped:
+            last = None if asked is None else asked.last(first, second)
+            if last is None or last.is_skipped:
                 states.append("here")
             elif second is not None and first is not None and not is_same(first, second):
                 states.append("changed")
@@ -178,7 +182,7 @@ class ClassAnswers:
         votes = [each for each in asked.votes if each is not None]
         if not votes or any(each.is_open(classroom.now()) for each in votes):
             return ""
-        last = [second or first for first, second in self._answers_here(asked, self._students())]
+        last = [asked.last(*both) for both in self._answers_here(asked, self._students())]
         given = [each for each in last if each is not None and not each.is_skipped]
         if not given:
             return ""
