@@ -95,11 +95,15 @@ class TeacherForm:
             yield _button("let_in", label, member=number, name=f"let_in{number}")
 
     def _of_answers(self) -> Iterator[FormField]:
-        """What is done with a question: closed, looked at, shown, asked again outside a test."""
+        """What is done with a question, if there is one: closed, looked at, shown, asked again
+        outside a test."""
         words = self._words
         yield from self._of_votes()
         if not self._large:
             yield _html("dots")
+        if not self._asks:
+            return
+        if not self._large:
             yield _note("proposal")
             yield _switch("peeks", words("class.peek"))
             if self._choices.peeks:
@@ -108,6 +112,13 @@ class TeacherForm:
         yield _switch("revealed", words("class.truth"))
         if self._shown[0] not in self._course.tests:
             yield _button("ask_again", words("class.ask_again"))
+
+    @property
+    def _asks(self) -> bool:
+        """Whether the displayed step asks something; what is shown already can be hidden, too."""
+        (name, index), display = self._shown, self._teaching.classroom.display
+        asked = asked_at(self._course.lesson(name, self._words.language), index)
+        return bool(asked) or name in self._course.tests or display.shown
 
     def _beside(self, by: int) -> Iterator[FormField]:
         """The button for the next step, or for the one before, if there is one."""

@@ -207,6 +207,8 @@ def test_answers_and_truth_are_shown_and_asked_again(desk: Desk) -> None:
 def test_a_test_is_not_asked_again_and_its_steps_have_no_titles_of_one_form(
     desk: Desk, test: str
 ) -> None:
+    assert PREFIX + "ask_again" not in desk.fields  # nothing is asked at first
+    desk.set("step", 1.0)
     assert PREFIX + "ask_again" in desk.fields
     desk.set("lesson", test)
     assert desk.room.display.lesson == test and PREFIX + "ask_again" not in desk.fields
