@@ -201,13 +201,13 @@ export class Player implements Robots {
     private readonly block = (place: number, index = this.index): HTMLElement =>
         this.sections[index]!.querySelector<HTMLElement>(`[data-block="${place}"]`)!
 
-    /** Make a step's parts answerable, with options in the student's order. */
+    /** Make a step's parts answerable, with options in the student's order; in a lecture, which is also on paper, in the author's. */
     private prepared(index: number): StepView {
-        const { page, student } = this
+        const { page, student } = this, isLecture = document.body.classList.contains("lecture")
         const section = this.sections[index]!
         page.steps[index]!.blocks.forEach((_, i) => {
             const options = this.block(i, index).querySelector(".options")
-            if (options) ordered(options, student.name, `${page.lesson} ${index} ${i}`)
+            if (options && !isLecture) ordered(options, student.name, `${page.lesson} ${index} ${i}`)
         })
         this.legend.add(section)
         const beneath = section.querySelector<HTMLElement>(".beneath")!
