@@ -130,7 +130,8 @@ def test_a_class_joins_is_frozen_led_and_watched_and_its_record_comes_down(tabs:
     for student in tabs.students:
         wait_for(lambda student=student: not student.lab.frozen)
 
-    tabs.press(re.compile("^Next for all: 2"))
+    for step in (1, 2):  # nobody was sent the first one yet
+        tabs.press(re.compile(f"^Next for all: {step}"))
     for student, height in ((first, 40.0), (second, 10.0)):
         student.page.get_by_role("heading", name="Draw what the tracker does").wait_for()
         student.ask(c.Predict(times=(0.0, 4.0, 8.0), values=(0.0, height, 0.0)))

@@ -28,9 +28,17 @@ class StepsForAll:
         return display.lesson, min(display.step, self._count(display.lesson) - 1)
 
     def beside(self, display: Display, orders: Orders, by: int) -> TakeStep | None:
-        """The next step for all (`by` is 1) or the one before (-1); None if there is none."""
-        name = orders.push.route if isinstance(orders.push, TakeStep) else ""
-        at: tuple[str, int] | None = self.shown(display)
+        """The next step for all (`by` is 1) or the one before (-1); None if there is none.
+
+        A lesson that is displayed and has not been sent begins with its first step.
+        """
+        sent = orders.push if isinstance(orders.push, TakeStep) else None
+        name, at = "" if sent is None else sent.route, self.shown(display)
+        if by > 0 and at[1] == 0 and (sent is None or (sent.lesson, sent.step) != at):
+            return TakeStep(*at, name)
+        return self._after(at, name, by)
+
+    def _after(self, at: tuple[str, int] | None, name: str, by: int) -> TakeStep | None:
         while at is not None:
             at = self._moved(at, name, by)
             if at is not None and not self._steps(at[0])[at[1]].when:
