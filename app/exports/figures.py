@@ -174,14 +174,16 @@ def _draw_space(figure: Figure, axes: Axes, experiment: Experiment, runs: list[T
     given = curve.given
     if given is not None:
         axes.plot(*(1e3 * given.T), color="0.5", linewidth=0.8, linestyle="--", label="given")
-    for run in runs:
+    for number, run in enumerate(runs):
+        known = [each.label for each in runs[:number]]
+        label = "_" if run.label in known else run.label  # of a log with gaps
         z, theta, colour = (
             1e3 * frame.planar(run.fields["y"]),
             run.fields["theta"],
             _colour(run).hex,
         )
         raised = np.isfinite(theta) & ~curve.draws(theta)
-        axes.plot(*np.where(raised, np.nan, z).T, color=colour, linewidth=1.6, label=run.label)
+        axes.plot(*np.where(raised, np.nan, z).T, color=colour, linewidth=1.6, label=label)
         axes.plot(*np.where(raised, z, np.nan).T, ":", color=colour, linewidth=0.8, alpha=0.6)
         axes.plot(*z[0], "o", color=colour, markersize=6)
         axes.plot(*z[-1], "s", color=colour, markersize=7)

@@ -57,6 +57,12 @@ def test_a_log_with_other_columns_units_and_rates_is_drawn_beside_the_run(tmp_pa
     (drawn,) = [line for line in space.lines if line.get_label() == LOG]
     assert np.allclose(np.array(drawn.get_data()).T, 1e3 * run.y[rows], atol=1e-3)
     assert to_rgb(drawn.get_color()) == to_rgb(INK.hex)
+    np.savetxt(file, np.delete(numbers, slice(80, 140), axis=0), fmt="%.12f")
+    places = {name: place for place, name in enumerate(columns, 1)}
+    space = run.plot(log=file, columns=places, units=units).axes[0]
+    legend = space.get_legend() or space.figure.legends[0]
+    assert [text.get_text() for text in legend.get_texts()].count(LOG) == 1
+    assert sum(to_rgb(line.get_color()) == to_rgb(INK.hex) for line in space.lines) > 4
 
 
 def test_a_log_is_drawn_from_the_command_line(
