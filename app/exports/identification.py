@@ -14,11 +14,10 @@ from onpath.models.closed_loop.trajectory import header
 from onpath.models.studies.exciting_motion import PlannedMotion
 from onpath.models.studies.link_estimate import LinkEstimate, LinkParameter
 from onpath.models.studies.log_identification import FileEstimate
-from onpath.models.studies.parameter_estimate import BaseParameter
+from onpath.models.studies.parameter_estimate import MUCH, BaseParameter
 from onpath.models.systems.robots import RobotEntry
 
 SETTINGS = "settings"  # name of what `--set @FILE` reads
-MUCH = 0.1  # unexplained share of the torque above which the table warns
 
 
 def identification_data(found: FileEstimate) -> dict[str, Any]:
@@ -146,7 +145,10 @@ def remarks(found: FileEstimate) -> list[str]:
     if any(each.others for each in result.found):
         lines.append("the motion cannot distinguish the parameters of a sum")
     if not all(np.isfinite(each.high) for each in result.found):
-        lines.append("? instead of an interval: the robot moves for too short a time for one")
+        why = "too much of the torque is not explained"
+        if result.unexplained <= MUCH:
+            why = "the robot moves for too short a time for one"
+        lines.append(f"? instead of an interval: {why}")
     if result.unexcited:
         lines.append(f"not excited: {', '.join(result.unexcited)}")
     if found.motion:
@@ -163,7 +165,7 @@ def remarks(found: FileEstimate) -> list[str]:
         " Of friction where motors are slow or turn round, nothing is assumed."
     )
     dry = [each for each in result.found if each.is_dry_friction]
-    negative = [each.name for each in dry if each.high < 0]
+    negative = [each.name for each in dry if each.value + 2 * each.error < 0]
     doubts = ["too much of the torque is not explained"] if result.unexplained > MUCH else []
     doubts += [f"dry friction is never negative, but {' and '.join(negative)}"] if negative else []
     lines += [

@@ -51,6 +51,8 @@ class MotionRecord:
         u: torque of the motors, constant over each step, (rows, m), [N m].
         force: at the end-point, (rows, p), [N].
         measured: whether the joint angles are sensor readings, with rates from a filter.
+        noise: random errors as large as those of the coordinates, and of their rates, two arrays of
+            shape (rows, n); None: they are exact.
         start: time since the rows of its part of the file began, [s]; 0 unless there was a gap.
     """
 
@@ -60,6 +62,7 @@ class MotionRecord:
     u: Array
     force: Array
     measured: bool = False
+    noise: tuple[Array, Array] | None = None
     start: float = 0.0
 
 
@@ -133,12 +136,21 @@ class RecordEquations:
     starts: NDArray[np.int_]
     slow: SlowFriction | None
 
-    def torque(self, late: float) -> Array:
-        """Right-hand side if the torques were logged `late` seconds after they acted."""
+    def torque(self, late: float, *, held: bool = False) -> Array:
+        """Right-hand side if the torques were logged `late` seconds after they acted.
+
+        Logged torques are means over the steps. With their integral U, <w, u> = -<w', U>, whose
+        samples suffice for a smooth torque. One that is constant over each step acts in a frequency
+        ω by a share (ω dt)²/12 more.
+
+        Args:
+            held: whether they are constant over each step.
+        """
         edges = np.arange(len(self.u) + 1.0)
         moved = step_means(edges, self.u, edges + late / self.dt)
-        held = bump(self.dt)[3]
-        acting = _filtered(np.einsum("rnm,rm->rn", self.motors, moved), held, self.dt)
+        _, rate, _, constant = bump(self.dt)
+        kernel = constant if held else self.dt * np.cumsum(rate)[:-1]
+        acting = _filtered(np.einsum("rnm,rm->rn", self.motors, moved), kernel, self.dt)
         return acting[self.starts // _stride(self.dt)] + self.known
 
     def middles(self) -> Array:
@@ -208,9 +220,9 @@ def dry_columns_of(parts: list[RecordEquations]) -> Array:
     return np.concatenate([part.other_dry for part in parts], axis=1)
 
 
-def torque_of(parts: list[RecordEquations], late: float) -> Array:
-    """Right-hand side of all records, (windows, n)."""
-    return np.concatenate([part.torque(late) for part in parts])
+def torque_of(parts: list[RecordEquations], late: float, *, held: bool = False) -> Array:
+    """Right-hand side of all records, (windows, n); see `RecordEquations.torque`."""
+    return np.concatenate([part.torque(late, held=held) for part in parts])
 
 
 def without_slow(parts: list[RecordEquations], values: Array) -> Array:

@@ -10,6 +10,7 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
+from numpy.typing import NDArray
 
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.trajectory import Trajectory
@@ -157,7 +158,7 @@ def along_path(
     Returns:
         distance, speed, theta, theta_rate and xi, shape (rows,) each; NaN in a gap.
     """
-    known = np.isfinite(motion.y).all(axis=1)
+    known: NDArray[np.bool_] = np.asarray(np.isfinite(motion.y).all(axis=1))
     y, y_rate = motion.y[known], motion.y_rate[known]
     theta = closest_parameters(frame, curve, y)
     z = frame.planar(y)

@@ -37,9 +37,12 @@ from onpath.models.studies.linear_model import (
 )
 from onpath.models.systems.system import MechanicalSystem
 
+BLOCKS = 12  # parts of the motion, of which each is left out in turn
+BLOCK_QUANTILE = 2.201  # half of a 95 % interval in their standard errors: Student's t of 11
 INDEPENDENT = 2.5  # windows that tell as much of white noise as one without overlap
 FEWEST_FREE = 3.0  # degrees of freedom, with fewer of which there is no interval
 HARDLY = 0.1  # share of a column that friction of slow motors leaves, below which it counts as zero
+MUCH = 0.1  # unexplained share of the torque above which values have no interval
 UNMOVED = 1e-9  # rms of a column, relative to the largest, below which it counts as zero
 DELAY = "delay"  # name of the delay among the estimates
 NEGLIGIBLE = 1e-3  # smaller shares of a parameter in a combination are left out
@@ -55,8 +58,9 @@ class BaseParameter:
         value: estimate.
         error: its standard error.
         low, high: interval that contains the true value with a probability of 95 %, whatever the
-            friction of slow motors, and however wide the transition of dry friction about
-            standstill; infinite if the record is too short for one.
+            friction of slow motors, however wide the transition of dry friction about standstill,
+            and whether torques are smooth or constant from row to row; infinite if the record is
+            too short for one, or `MUCH` of the torque is not explained.
         others: (name, multiple) of each further parameter of the sum.
     """
 
@@ -119,7 +123,14 @@ def estimate(system: MechanicalSystem, records: list[MotionRecord], geometry: Ar
     parts = [record_equations(system, model, record, geometry) for record in records]
     names = (*model.names, *(f"c{i + 1}" for i in range(system.m)))
     late = _delay(parts)
-    dry = _solved(names, parts, late)
+    noisy = [
+        [
+            replace(record_equations(system, model, _with_noise(record, sign), geometry), slow=each)
+            for record, each in zip(records, (part.slow for part in parts), strict=True)
+        ]
+        for sign in ((-1, 1) if any(record.noise for record in records) else ())
+    ]
+    dry = _solved(names, parts, late, noisy)
     if any(record.measured for record in records):
         return dry
     without = [replace(part, slow=None) for part in parts]  # there is no friction to stick
@@ -243,15 +254,37 @@ def _scaled(parts: list[RecordEquations], used: Sequence[int]) -> tuple[list[int
     return moved, columns[..., moved] / size[moved], size[moved]
 
 
-def _solved(names: tuple[str, ...], parts: list[RecordEquations], late: float) -> Estimate:
-    """Estimates of the base parameters and the delay, with the first columns of the regressor."""
+def _with_noise(record: MotionRecord, sign: int) -> MotionRecord:
+    """A record with twice the errors of its coordinates and rates."""
+    if record.noise is None:
+        return record
+    q, v = record.noise
+    return replace(record, q=record.q + sign * q, v=record.v + sign * v)
+
+
+def _solved(
+    names: tuple[str, ...],
+    parts: list[RecordEquations],
+    late: float,
+    noisy: Sequence[list[RecordEquations]] = (),
+) -> Estimate:
+    """Estimates of the base parameters and the delay, with the first columns of the regressor.
+
+    Errors of the angles are in the regressor, too, and bias the estimates. What twice the errors
+    change in them is therefore taken back.
+
+    Source: Cook and Stefanski, Journal of the American Statistical Association 89, 1994 (SIMEX).
+
+    Args:
+        noisy: equations with twice the errors, and as many slow motors.
+    """
     moved, scaled, scale = _scaled(parts, range(len(names)))
     if not moved:
         raise ValueError("the robot hardly moves")
     change = _change(parts, late)
     shows = not _depends(change, scaled)
     if late and not shows:
-        return _solved(names, parts, 0.0)
+        return _solved(names, parts, 0.0, noisy)
     torque = without_slow(parts, torque_of(parts, late))
     chosen, others, shares = _independent(scaled.reshape(-1, len(moved)))
     jerk = float(np.sqrt(np.mean(change**2))) or 1.0
@@ -261,27 +294,34 @@ def _solved(names: tuple[str, ...], parts: list[RecordEquations], late: float) -
     values, _ = least_squares(regressor, torque)
     residual = np.asarray(torque - regressor @ values, dtype=float)
     unknown = sum(part.slow.torques for part in parts if part.slow)
-    errors = _errors(regressor, residual, unknown)
-    wide = errors * _quantile(regressor, unknown)
-    wide += _change_by_friction(parts, [moved[i] for i in chosen], scale[chosen], regressor, torque)
+    found = [moved[i] for i in chosen], scale[chosen]
+    errors, by_blocks = _errors(regressor, residual, unknown), _block_errors(regressor, torque)
+    wide = np.maximum(errors * _quantile(regressor, unknown), by_blocks * BLOCK_QUANTILE)
+    errors = np.maximum(errors, by_blocks)
+    wide += _change_by_friction(parts, *found, regressor, torque)
+    held = without_slow(parts, torque_of(parts, late, held=True))
+    wide += np.abs(least_squares(regressor, held)[0] - values)
+    unexplained = _share(residual, torque)
+    wide += np.inf if unexplained > MUCH else 0.0
+    values = values - _change_by_noise(noisy, *found, late, regressor, values)
 
     def parameter(i: int, name: str, size: float, sums: Sums = (), shift: float = 0.0):
         value = float(values[i]) / size + shift
         error, half = float(errors[i]) / size, float(wide[i]) / size
         return BaseParameter(name, value, error, value - half, value + half, sums)
 
-    found = list[tuple[int, BaseParameter]]()
+    told = list[tuple[int, BaseParameter]]()
     for i, place in enumerate(chosen):
         sums = tuple(
             (names[moved[j]], float(share) * scale[j] / scale[place])
             for j, share in zip(others, shares[i], strict=True)
             if abs(share) > NEGLIGIBLE
         )
-        found.append((moved[place], parameter(i, names[moved[place]], scale[place], sums)))
+        told.append((moved[place], parameter(i, names[moved[place]], scale[place], sums)))
     return Estimate(
-        found=tuple(each for _, each in sorted(found, key=lambda pair: pair[0])),
+        found=tuple(each for _, each in sorted(told, key=lambda pair: pair[0])),
         unexcited=tuple(name for j, name in enumerate(names) if j not in moved),
-        unexplained=_share(residual, torque),
+        unexplained=unexplained,
         delay=parameter(len(chosen), DELAY, jerk, shift=late) if shows else None,
         times=np.concatenate([part.middles() for part in parts]),
         torque=torque,
@@ -308,6 +348,29 @@ def _change_by_friction(
             other[..., i] = own[..., motor] / scale[i]
         most = np.maximum(most, np.abs(least_squares(other, torque)[0] - values))
     return most
+
+
+def _change_by_noise(
+    noisy: Sequence[list[RecordEquations]],
+    places: list[int],
+    scale: Array,
+    late: float,
+    regressor: Array,
+    values: Array,
+) -> Array:
+    """How much twice the errors of the angles change each estimate.
+
+    Args:
+        noisy: see `_solved`.
+        places, scale: see `_change_by_friction`.
+    """
+    changes = list[Array]()
+    for parts in noisy:
+        other = regressor.copy()
+        other[..., : len(places)] = without_slow(parts, columns_of(parts)[..., places]) / scale
+        torque = without_slow(parts, torque_of(parts, late))
+        changes.append(least_squares(other, torque)[0] - values)
+    return np.asarray(np.mean(changes or [0 * values], axis=0), dtype=float)
 
 
 def _change(parts: list[RecordEquations], late: float) -> Array:
@@ -348,6 +411,37 @@ def _errors(regressor: Array, residual: Array, removed: int) -> Array:
         middle += part + part.T
     lost = residual.size / INDEPENDENT / _freedom(regressor, removed)
     return np.sqrt(np.maximum(np.diag(inverse @ middle @ inverse), 0.0) * lost)
+
+
+def _block_errors(regressor: Array, torque: Array) -> Array:
+    """Standard errors from estimates without each of B parts of the motion, shape (unknowns,).
+
+    With the estimates θ of all windows, and θ_b without those of part b,
+
+        s² = (B - 1) / B Σ_b (θ_b - θ)².
+
+    Residuals are small where a few windows decide on an estimate, as of a robot that turns quickly
+    once or twice. These errors are not, and parts may be correlated within.
+
+    Source: Künsch, Annals of Statistics 17, 1989.
+
+    Args:
+        regressor: X, shape (windows, n, unknowns).
+        torque: shape (windows, n).
+    """
+    parts = np.array_split(np.arange(len(regressor)), BLOCKS)
+    square: Array = np.stack([np.einsum("kji,kjl->il", regressor[b], regressor[b]) for b in parts])
+    right: Array = np.stack([np.einsum("kji,kj->i", regressor[b], torque[b]) for b in parts])
+    whole, target = square.sum(axis=0), right.sum(axis=0)
+    found = _solution(whole, target)
+    without = [_solution(whole - a, target - b) for a, b in zip(square, right, strict=True)]
+    spread = sum(((each - found) ** 2 for each in without), np.zeros(len(found)))
+    return np.asarray(np.sqrt((BLOCKS - 1) / BLOCKS * spread), dtype=float)
+
+
+def _solution(square: Array, right: Array) -> Array:
+    """The solution of normal equations, and the shortest one if there are several."""
+    return np.asarray(np.linalg.lstsq(square, right)[0], dtype=float)
 
 
 def _freedom(regressor: Array, removed: int) -> float:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import groupby, pairwise
+from itertools import groupby, pairwise, permutations
 from math import pi
 from pathlib import Path
 
@@ -248,15 +248,41 @@ def _record(rows: Array, robot: Robot, measured: bool, time: str) -> MotionRecor
     dt = _step(rows[:, 0], time)
     times = rows[:, 0]
     q, v, u, force = np.split(rows[:, 1:], np.cumsum([n, n, m]), axis=1)
+    errors, noise = _errors(times, q[:, :joints]), None
     if np.abs(np.diff(times) - dt).max() > EVEN * dt:
         whole = round((times[-1] - times[0]) / dt)
         grid: Array = np.linspace(float(times[0]), float(times[-1]), whole + 1)
         dt = float(grid[1] - grid[0])
         q, v = _interpolated(times, q, grid), _interpolated(times, v, grid)
         u, force = _means(times, u, grid), _means(times, force, grid)
+        errors = _interpolated(times, errors, grid)
     if measured:
         v[:, :joints] = smooth_velocities(q[:, :joints], dt)
-    return MotionRecord(dt=dt, q=q, v=v, u=u, force=force, measured=measured)
+        noise = np.zeros_like(q), np.zeros_like(v)
+        noise[0][:, :joints], noise[1][:, :joints] = errors, smooth_velocities(errors, dt)
+    return MotionRecord(dt=dt, q=q, v=v, u=u, force=force, measured=measured, noise=noise)
+
+
+def _errors(times: Array, angles: Array) -> Array:
+    """Random errors as large as those of measured angles, shape (rows, joints).
+
+    How large these are follows from the distance of each row from the cubic through its four
+    neighbours, whose weights are w: with independent errors of the variance σ², that has the
+    variance σ² (1 + Σ w²).
+
+    Source: Gasser, Sroka and Jennen-Steinmetz, Biometrika 73, 1986, with straight lines.
+    """
+    rows = len(times)
+    if rows < 5:
+        return np.zeros_like(angles)
+    near = np.arange(2, rows - 2)[:, None] + [-2, -1, 1, 2]
+    away, weights = times[near] - times[2:-2, None], np.ones((rows - 4, 4))
+    for i, j in permutations(range(4), 2):
+        weights[:, i] *= away[:, j] / (away[:, j] - away[:, i])
+    apart = angles[2:-2] - np.einsum("ki,kij->kj", weights, angles[near])
+    size = np.sqrt(np.mean(apart**2 / (1 + (weights**2).sum(axis=1))[:, None], axis=0))
+    errors = size * np.random.default_rng(0).normal(size=angles.shape)
+    return np.asarray(errors, dtype=float)
 
 
 def _check_times(times: Array, lines: Sequence[int], column: str) -> None:

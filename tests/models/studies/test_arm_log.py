@@ -107,6 +107,26 @@ def test_uneven_times_give_what_even_ones_give() -> None:
             assert value == pytest.approx(true_value, rel=5e-3, abs=5e-4), (uneven, name)
 
 
+def inertias_off(logger: Logger, seeds: range) -> Array:
+    """Mean error of M11 and M22 in logs without friction, as a share of them."""
+    motion, plant = motion_of("five_bar", dry=0.0)
+    true = truth("five_bar", plant, dry=0.0)
+    found = [found_in(logger.rows(motion, seed), "five_bar", plant) for seed in seeds]
+    return np.array([np.mean([x[n][0] / true[n] - 1 for x in found]) for n in ("M11", "M22")])
+
+
+def test_torques_that_change_within_a_row_are_not_taken_for_constant() -> None:
+    """Without noise. If they were constant, inertias would seem 0.5 % too small here."""
+    exact = Logger(rate=100, uneven=0.3, angle_noise=0, torque_noise=0)
+    assert np.abs(inertias_off(exact, range(1))).max() < 1.5e-3
+
+
+def test_noise_of_the_angles_does_not_bias_inertias() -> None:
+    """If its effect in the regressor was left in, they would seem 4 to 6 % too small here."""
+    noisy = Logger(rate=100, uneven=0.3, angle_noise=6e-3)
+    assert np.abs(inertias_off(noisy, range(8))).max() < 0.025
+
+
 def found_in(
     rows: tuple[np.ndarray, np.ndarray, np.ndarray], robot: str, plant: np.ndarray
 ) -> dict[str, tuple[float, float, float]]:
