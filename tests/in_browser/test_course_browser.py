@@ -28,12 +28,13 @@ from onpath.lessons.schema import (
     Text,
 )
 from onpath.lessons.words import ENGLISH
-from tests.support.browser import Tab, wait_for
+from tests.support.browser import WAIT, Tab, wait_for
 from tests.support.built_in import built_in_course
 from tests.support.pupil import Pupil
 from tests.support.solutions import passed
 
 pytestmark = pytest.mark.thorough
+expect.set_options(timeout=WAIT * 1e3)
 
 COURSE, _ = built_in_course()
 NUMBERS = COURSE.numbers()

@@ -126,7 +126,8 @@ def test_keys_on_the_handle_look_back_and_everything_goes_along(page: Page) -> N
     page.evaluate(THREE_FRAMES)
     for side, element in zip(sample["sides"], page.locator(".lens .distance").all(), strict=True):
         assert f"{1e3 * side['distance']:.1f} mm" in told
-        assert element.inner_text() == f"{1e3 * side['distance']:.1f} mm"
+        decimals = 2 if "×20" in element.locator("..").inner_text() else 1  # as close as it goes
+        assert element.inner_text() == f"{1e3 * side['distance']:.{decimals}f} mm"
     assert page.locator(".lens").filter(has_text=ENGLISH("chart.held")).count() == 2
     then = page.evaluate("onpath.simulation.sides.map(side => side.tip())")
     np.testing.assert_allclose(then, sample["tips"], atol=1e-12)
