@@ -28,6 +28,7 @@ from onpath.lessons.schema import (
     Text,
 )
 from onpath.lessons.words import ENGLISH
+from onpath.models.systems.law_parameters import LEVEL_SET
 from tests.support.browser import WAIT, Tab, wait_for
 from tests.support.built_in import built_in_course
 from tests.support.pupil import Pupil
@@ -103,7 +104,8 @@ def assert_shown(pupil: Pupil, step: Step) -> None:
         expect(tab.page.locator(".board, .compared canvas").first).to_be_visible()
         return
     wanted = pupil.lesson.scene_at(pupil.index).plots
-    rows = row_data(tab.simulation.sample_layout.fields, False, ENGLISH)
+    is_level_set = tab.simulation.parameters.across == LEVEL_SET
+    rows = row_data(tab.simulation.sample_layout.fields, is_level_set, ENGLISH)
     named = {row["name"]: f"{row['label']} [{row['unit']}]" for row in rows}
     named |= {"phase": ENGLISH("plot.phase_name")}
     for plot in wanted:
