@@ -114,7 +114,7 @@ SOLUTIONS: dict[str, dict[str, tuple[Gesture, ...]]] = {
     "09b-the-theorem-and-section-iii": {
         "experiment-one": (
             *(Wait(1), Key("w", 5), Key("a", 3), Wait(1)),
-            *(Enter("Target", 1.57), Key("x"), Wait(3)),
+            *(Enter("Target", 90), Key("x"), Wait(3)),
         ),
     },
     "09c-sections-iv-and-v": {
