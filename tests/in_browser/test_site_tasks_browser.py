@@ -39,7 +39,7 @@ FOLLOWED = """seconds => {
 }"""
 """Let time pass, and look at the tasks ten times a second."""
 ANEW = """step => {
-    Object.assign(site.notes, {tasks: {}, ways: {}})
+    site.notes.given = []
     site.open(step)
 }"""
 FIELD = """name => site.stage.figure.data.form.groups.flatMap(group => group.fields)
