@@ -30,13 +30,14 @@ class StepsForAll:
     def beside(self, display: Display, orders: Orders, by: int) -> TakeStep | None:
         """The next step for all (`by` is 1) or the one before (-1); None if there is none.
 
-        A lesson that is displayed and has not been sent begins with its first step.
+        A lesson that is displayed and has not been sent begins with its first step. In a concept
+        test everybody goes on by themselves.
         """
         sent = orders.push if isinstance(orders.push, TakeStep) else None
         name, at = "" if sent is None else sent.route, self.shown(display)
         if by > 0 and at[1] == 0 and (sent is None or (sent.lesson, sent.step) != at):
             return TakeStep(*at, name)
-        return self._after(at, name, by)
+        return None if at[0] in self.course.tests else self._after(at, name, by)
 
     def _after(self, at: tuple[str, int] | None, name: str, by: int) -> TakeStep | None:
         while at is not None:

@@ -48,7 +48,7 @@ def test_a_member_who_was_removed_leaves_the_name_to_others_and_may_come_back() 
 @pytest.mark.parametrize("large", [False, True])
 def test_the_projection_shows_how_to_join(large: bool) -> None:
     shown = page.class_code(ADDRESS, False, "m63eyz", 3, ENGLISH, large)
-    assert ADDRESS in shown and "M63EYZ" in shown and "3 in the class" in shown
+    assert ADDRESS in shown.replace("<wbr>", "") and "M63EYZ" in shown and "3 in the class" in shown
     assert shown.count("<svg") == 1 and ENGLISH("class.qr") in shown
 
 
