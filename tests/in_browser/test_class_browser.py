@@ -273,12 +273,13 @@ def assert_projected(tabs: Class, step: int) -> None:
                 wait_for(lambda line=line: line.evaluate(IN_SIGHT))
         elif visible:
             wait_for(lambda: picture.locator("svg:has(text)").first.evaluate(IN_SIGHT))
-        roles = [("button", re.compile("^Next for all"))]
+        offered = [tabs.page.get_by_role("button", name=re.compile("^Next for all"))]
         if asked is not None:
-            roles += [("button", "Ask this again"), ("switch", "Show the answers")]
-            roles.append(("switch", "Show the truth"))
-        for role, name in roles:
-            assert tabs.page.get_by_role(role, name=name).evaluate(IN_SIGHT)
+            switches = "Show the answers", "Show the truth"
+            offered.append(tabs.page.get_by_role("button", name="Ask this again"))
+            offered += [tabs.page.get_by_role("switch", name=name) for name in switches]
+        for each in offered:
+            assert each.evaluate(IN_SIGHT)
         strip = placed(page.locator("#op-strip"))
         for reading in page.locator("#op-strip .reading").all():
             box = placed(reading)

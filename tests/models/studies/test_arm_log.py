@@ -112,7 +112,8 @@ def inertias_off(logger: Logger, seeds: range) -> Array:
     motion, plant = motion_of("five_bar", dry=0.0)
     true = truth("five_bar", plant, dry=0.0)
     found = [found_in(logger.rows(motion, seed), "five_bar", plant) for seed in seeds]
-    return np.array([np.mean([x[n][0] / true[n] - 1 for x in found]) for n in ("M11", "M22")])
+    shares = [[x[name][0] / true[name] - 1 for name in ("M11", "M22")] for x in found]
+    return np.array(shares).mean(axis=0)
 
 
 def test_torques_that_change_within_a_row_are_not_taken_for_constant() -> None:
