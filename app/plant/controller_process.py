@@ -31,7 +31,7 @@ from onpath.models.paths.curves import Curve
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import RobotEntry
 
-ASKED = 1.0  # [s] without a request, after which the process that asks counts as lost
+ASKED = 1.0  # [s] without a request or a measurement, after which who sent them counts as lost
 LINGER = 10.0  # [s] for which a lost process's controller still answers
 START = "spawn"  # so that it shares nothing with the process that starts it
 PATIENCE = 60.0  # [s] for the controllers to be made
@@ -223,8 +223,10 @@ class _Serving:
             self._check()
 
     def _is_over(self) -> bool:
-        gone = self._until is not None
-        return gone and (not self._link.started or time.monotonic() > (self._until or 0))
+        if self._until is None:
+            return False
+        now, link = time.monotonic(), self._link
+        return not link.started or now > link.heard + ASKED or now > self._until
 
     def _patience(self) -> float:
         """Time until something has to be done if nothing comes, [s]."""

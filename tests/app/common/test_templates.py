@@ -49,7 +49,7 @@ from tests.support.given import notes_with
 TAG = re.compile(r"</?(?!br\b)[a-zA-Z][a-zA-Z0-9]*(\s[a-z-]+=|\s*/?>)")  # markdown may have <br/>
 BYTES_ALONE = "app/viser_adapter/page_scripts.py"  # puts our files into viser's page, no values
 TYPES_ALONE = "app/channel/typescript.py"  # writes types, such as Changes<Message>
-VOID = {"br", "img", "input", "meta", "line", "polyline"}
+VOID = {"br", "wbr", "img", "input", "meta", "line", "polyline"}
 HOSTILE = ["<img src=x onerror=alert(1)>", '"><script>alert(2)</script>', "'{0}{{ 7 }}{% x %}&lt;"]
 DAY = datetime(2025, 3, 2)
 COURSE = built_in_course()[0]
