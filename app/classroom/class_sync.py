@@ -1,7 +1,7 @@
 """Synchronizes the class with the labs of this process: progress and the teacher's orders.
 
-It runs several times a second, and at once after an order, in a separate thread. This is safe
-because labs are changed only by commands and only their immutable parts are read.
+It runs several times a second, and at once after a push or a freeze, in a separate thread. This
+is safe because labs are changed only by commands and only their immutable parts are read.
 """
 
 from __future__ import annotations

@@ -23,8 +23,8 @@ def grade_sheet(
     """The sheet Grades, with a column for each lesson that anybody has begun, 0 to 100.
 
     It has the form that Moodle imports (*Import*, *Paste from spreadsheet*), by Moodle's
-    documentation and source; it was not tried in a Moodle. Of two labs of one student, the one with
-    more points in a lesson counts. Students without an identification are left out.
+    documentation and source; this has not been tried in Moodle. Of two labs of one student,
+    the one with more points in a lesson counts. Students without an identification are left out.
 
     Returns:
         None if students are not asked to identify themselves.

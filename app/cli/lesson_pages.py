@@ -91,10 +91,10 @@ class WriteWorksheet:
         if is_of_one:
             raise ValueError("--all: the folder gets all lessons; name neither one nor files")
         course, folder, words = _course(self.lessons, self.language)
-        into.mkdir(exist_ok=True)
         made = {
             name: worksheet(course, folder, name, words, self.variant) for name in course.lessons
         }
+        into.mkdir(parents=True, exist_ok=True)
         for name, (page, key) in made.items():
             _write(page, into / f"{name}.html", None)
             _write(key, into / f"{name}-key.html", None)

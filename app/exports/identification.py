@@ -147,7 +147,7 @@ def remarks(found: FileEstimate) -> list[str]:
     if not all(np.isfinite(each.high) for each in result.found):
         why = "too much of the torque is not explained"
         if result.unexplained <= MUCH:
-            why = "the robot moves for too short a time for one"
+            why = "the motion is too short for one"
         lines.append(f"? instead of an interval: {why}")
     if result.unexcited:
         lines.append(f"not excited: {', '.join(result.unexcited)}")

@@ -89,7 +89,8 @@ def log_from(data: Any) -> ShownLog | None:
         file, robot = str(data["file"])[-LONGEST_NAME:], str(data["robot"])
     except (KeyError, TypeError, ValueError):
         return None
-    if not (np.diff(t) >= 0).all():  # NaN fails too
+    is_moving = np.isfinite(arrays["y"]).all(axis=1).any()  # rows of gaps are NaN
+    if not is_moving or not np.isfinite(t).all() or (np.diff(t) < 0).any():
         return None
     return ShownLog(file, robot, LoggedMotion(t=t, **arrays))
 

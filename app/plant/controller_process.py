@@ -108,8 +108,11 @@ class ControllerProcess:
         except (ValueError, OSError):
             self.close()
             raise
-        except BaseException:  # such as Ctrl-C, when a plant may measure already
-            self.leave()
+        except BaseException:  # such as Ctrl-C
+            if self._connection.poll():  # it listens, so a plant may measure already
+                self.leave()
+            else:
+                self.close()
             raise
 
     @property

@@ -144,6 +144,7 @@ class LabPlant(LabDisplay):
         if self._beside is not None:
             log.info("the plant's torque is now: %s, for up to %g s", self._state.at_fault, LINGER)
             self._beside.leave()
+            log.info("the plant's controller has ended")
 
     # In the simulation thread
 
@@ -237,7 +238,7 @@ class LabPlant(LabDisplay):
             return self._over(self._stopped)
         if report.rows:
             self._sent = now
-            self._show(report, begins=state.phase == "waiting")
+            self._show(report, begins=state.phase in ("starting", "waiting"))
         phase = "ended" if report.code else "running" if report.started else "waiting"
         if phase == "ended" and now > self._sent + SILENT:
             beside.close()

@@ -462,8 +462,6 @@ def serve(
         log.info("stopping")
     finally:
         lab.stop()
-        if lab.desk is not None:
-            log.info("the plant's controller has ended")
 
 
 def _end(*_: object) -> None:
