@@ -55,6 +55,7 @@ class Page:
 
     Attributes:
         told: the last message of each kind; of the form's values, all.
+        option: what was voted for last. A vote for the same again is no other answer.
         since: when it was connected last.
         seen: when each step of `LESSON` was shown first, since it was connected last.
         moved: when robots moved first since then; 0: they have not.
@@ -65,6 +66,7 @@ class Page:
         self.told, self.seen = dict[str, dict[str, Any]](), dict[int, float]()
         self.code = self.teacher = ""
         self.since = self.moved = 0.0
+        self.option = 0
         self.pending = dict[str, dict[str, Any]]()
         self.stored = dict[str, float]()
         self._awake = asyncio.Event()
@@ -173,9 +175,10 @@ class Page:
                 for message in messages:
                     await socket.send(json.dumps(message))
 
-    async def vote(self, key: str, option: int) -> float:
-        """Answer the question, and return how long it takes until this is stored, [s]."""
-        begun = monotonic()
+    async def vote(self, key: str) -> float:
+        """Answer the question otherwise, and return how long it takes until this is stored, [s]."""
+        begun, option = monotonic(), 1 - self.option
+        self.option = option
         vote = {"do": "Predict", "lesson": LESSON, "step": QUESTION, "option": option, "key": key}
         self.pending[key] = vote
         if self.since:
@@ -270,11 +273,11 @@ class Lecture:
             ValueError: a vote was lost or doubled.
         """
         self._round += 1
-        key, option = f"round{self._round}", self._round % 2
+        key = f"round{self._round}"
 
         async def vote(each: Page) -> float:
             await asyncio.sleep(random.uniform(0.0, within))  # as people do
-            return await each.vote(key, option)
+            return await each.vote(key)
 
         voters = of or self.students
         waits = list[float](await asyncio.gather(*map(vote, voters)))

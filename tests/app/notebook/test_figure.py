@@ -130,7 +130,7 @@ def test_the_page_of_a_run_says_what_the_run_had_besides(tmp_path: Path) -> None
     place = (0.03, 0.0)
     cases: tuple[tuple[dict[str, Any], tuple[str, ...]], ...] = (
         ({}, ()),
-        ({"hold": (0.02, 0.05)}, ("a brake",)),
+        ({"hold": (0.02, 0.05)}, ("a hold",)),
         ({"start": (0.06, 0.0), "profile": [(0, 0), (1, 6)]}, ("another start", "a speed profile")),
         ({"velocity": (0.0, 0.1), "reverse_at": 0.05}, ("another start", "a reversal")),
         ({"push": (0, 0.02, place), "wall": (0, 0.1, place, 0.0)}, ("a pulling hand", "a wall")),

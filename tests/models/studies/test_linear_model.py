@@ -7,6 +7,7 @@ import json
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -188,7 +189,12 @@ def test_a_delay_of_the_logged_torques_changes_no_parameter(
     robot: str, values: dict[str, float], tmp_path: Path
 ) -> None:
     motion = record(robot, tmp_path, **values)
-    cut = {name: getattr(motion, name)[100:-100] for name in ("q", "v", "u", "force")}
+    cut: dict[str, Any] = {
+        name: getattr(motion, name)[100:-100] for name in ("q", "v", "u", "force")
+    }
+    if motion.noise is not None:
+        q, v = motion.noise
+        cut["noise"] = q[100:-100], v[100:-100]
     in_time = found(robot, replace(motion, **cut))
     assert in_time.delay is not None
     near = 5e-4 + (in_time.delay.high - in_time.delay.low) / 2  # that is 0 without sensors
