@@ -6,6 +6,7 @@ import type { FormField, FormGroup, FormMessage, FormNeed } from "../core/form_d
 import { recalled, remember } from "../core/memory"
 import { phrase } from "../core/words"
 import { rowOf, same, type FormHost, type FieldRow, type RowForm } from "./fields"
+import { isDrawn } from "./icons"
 
 const OPENED = "onpath-groups" // which groups are open, in the browser's memory
 const LOW = 900 // [px] of the window's height, below which one group is open at a time
@@ -174,6 +175,7 @@ class GroupView {
         back.title = back.ariaLabel = phrase(form.host.texts, "form.back_group", { group: group.title })
         const rows = new Map<string, HTMLElement[]>(), buttons = new Map<HTMLElement, HTMLElement[]>()
         let run: HTMLElement | null = null // to which a further button belongs
+        let areDrawn = false // the buttons of the run
         let last: FieldRow | null = null // of the section
         let at = ""
         for (const field of group.fields) {
@@ -189,12 +191,14 @@ class GroupView {
                 last = row
                 continue
             }
-            if (!run) {
+            const drawn = isDrawn(field.name)
+            if (!run || drawn !== areDrawn) {
                 run = runs.get(field.name) ?? made("div", "acts")
                 runs.set(field.name, run)
-                if (last?.beside) last.beside.append(run)
+                if (last?.beside && drawn) last.beside.append(run)
                 else own.push(run)
             }
+            areDrawn = drawn
             buttons.set(run, [...(buttons.get(run) ?? []), element])
         }
         for (const [box, elements] of buttons) arrange(box, elements)

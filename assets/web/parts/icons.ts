@@ -17,9 +17,9 @@ const LINES = {
 
 export type Icon = keyof typeof LINES
 
-/** Whether something has a picture by its name. */
-export function hasIcon(name: string): name is Icon {
-    return name in LINES
+/** Whether a button of a form is drawn, beside the pictures of a choice; all others are words. */
+export function isDrawn(name: string): name is "draw" | "undo" | "redo" {
+    return name === "draw" || name === "undo" || name === "redo"
 }
 
 export function icon(name: Icon): SVGSVGElement {

@@ -120,6 +120,19 @@ test("what is no number, or too large, is refused beside its field, and said", (
     assert.equal(row("speed").querySelector("[role=alert]")!.textContent, "")
 })
 
+test("only a drawn button stands among the pictures of a choice, and one of words below them", () => {
+    const path: FormField = {
+        name: "path", kind: "choice", label: "Path", default: "circle",
+        options: [{ value: "circle", label: "Circle", picture: "c.svg" }, { value: "line", label: "Line", picture: "l.svg" }],
+    }
+    const fields = [path, ...["draw", "undo", "controls"].map((name): FormField => ({ name, kind: "button", label: name.toUpperCase() }))]
+    const { form } = opened({ is: "form", place: "step", groups: [{ name: "step", title: "Here", fields }] })
+    const among = [...form.element.querySelectorAll(".pictures button.do")].map(each => each.textContent)
+    const below = [...form.element.querySelectorAll("button.do")].filter(each => !each.closest(".pictures"))
+    assert.deepEqual(among, ["DRAW", "UNDO"])
+    assert.deepEqual(below.map(each => [each.textContent, each.querySelector("svg")]), [["CONTROLS", null]])
+})
+
 test("what the lab refuses stands beside the field until it takes a value", () => {
     const { row, form, refused } = opened(FORM, { K1: "too hard" })
     assert.equal(row("K1").querySelector("[role=alert]")!.textContent, "too hard")
