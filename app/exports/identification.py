@@ -147,7 +147,7 @@ def remarks(found: FileEstimate) -> list[str]:
     if not all(np.isfinite(each.high) for each in result.found):
         why = "too much of the torque is not explained"
         if result.unexplained <= MUCH:
-            why = "the motion is too short for one"
+            why = "too little of the motion tells the value"
         lines.append(f"? instead of an interval: {why}")
     if result.unexcited:
         lines.append(f"not excited: {', '.join(result.unexcited)}")

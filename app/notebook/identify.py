@@ -39,7 +39,8 @@ class IdentificationResult:
         """Intervals that contain the true values with a probability of 95 %.
 
         Of friction where motors are slow or turn round, nothing is assumed. They are infinite if
-        the motion is too short, or if more than a twentieth of the torque is not explained.
+        too little of the motion tells a value, or more than a twentieth of the torque is not
+        explained.
         """
         return {each.label(): (each.low, each.high) for each in self.found.estimate.found}
 

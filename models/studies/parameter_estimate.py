@@ -40,6 +40,7 @@ from onpath.models.systems.system import MechanicalSystem
 BLOCKS = 12  # parts of the motion, of which each is left out in turn
 BLOCK_QUANTILE = 2.201  # half of a 95 % interval in their standard errors: Student's t of 11
 INDEPENDENT = 2.5  # windows that tell as much of white noise as one without overlap
+FEWEST_WINDOWS = 2.0  # that tell a value, with fewer of which it has no interval
 FEWEST_FREE = 3.0  # degrees of freedom, with fewer of which there is no interval
 HARDLY = 0.1  # share of a column that friction of slow motors leaves, below which it counts as zero
 MUCH = 0.05  # unexplained share of the torque above which values have no interval
@@ -60,7 +61,8 @@ class BaseParameter:
         low, high: interval that contains the true value with a probability of 95 %, whatever the
             friction of slow motors, however wide the transition of dry friction about standstill,
             and whether torques are smooth or constant from row to row; infinite if the record is
-            too short for one, or `MUCH` of the torque is not explained.
+            too short for one, or tells it in one window alone, or `MUCH` of the torque is not
+            explained.
         others: (name, multiple) of each further parameter of the sum.
     """
 
@@ -254,6 +256,23 @@ def _scaled(parts: list[RecordEquations], used: Sequence[int]) -> tuple[list[int
     return moved, columns[..., moved] / size[moved], size[moved]
 
 
+def windows_that_tell(regressor: Array) -> Array:
+    """How many windows tell each value: (Σ e)² / Σ e², with a window's sum e of squares.
+
+    A value that only one window tells fits this window whatever its error, so that no residual
+    shows the error.
+
+    >>> alike, alone = np.ones(5), np.array([0, 0, 3.0, 0, 0])
+    >>> windows_that_tell(np.stack([alike, alone], axis=1)[:, None]).tolist()
+    [5.0, 1.0]
+
+    Args:
+        regressor: shape (windows, n, values).
+    """
+    each = np.sum(regressor**2, axis=1)
+    return np.sum(each, axis=0) ** 2 / np.sum(each**2, axis=0)
+
+
 def _with_noise(record: MotionRecord, sign: int) -> MotionRecord:
     """A record with twice the errors of its coordinates and rates."""
     if record.noise is None:
@@ -303,6 +322,7 @@ def _solved(
     wide += np.abs(least_squares(regressor, held)[0] - values)
     unexplained = _share(residual, torque)
     wide += np.inf if unexplained > MUCH else 0.0
+    wide[windows_that_tell(regressor) < FEWEST_WINDOWS] = np.inf
     values = values - _change_by_noise(noisy, *found, late, regressor, values)
 
     def parameter(i: int, name: str, size: float, sums: Sums = (), shift: float = 0.0):

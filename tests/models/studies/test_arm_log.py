@@ -177,7 +177,7 @@ def test_a_motion_that_is_too_short_has_no_intervals(tmp_path: Path) -> None:
     write_log(path, t[:600], q[:600], u[:600])
     result = onpath.identify("five_bar", path, columns=COLUMNS, units=UNITS)
     assert all(np.isinf(low) and np.isinf(high) for low, high in result.intervals.values())
-    assert "± ?" in repr(result) and "too short" in repr(result)
+    assert "± ?" in repr(result) and "too little of the motion" in repr(result)
     assert identification_data(result.found)["parameters"][0]["interval"] is None
 
 
