@@ -211,6 +211,7 @@ class Serve:
             laws=laws or ("path_following",),
             at_fault=self.at_fault,
             fastest=self.fastest,
+            own=tuple(self.law),
         )
 
     def _laws(self, entry: RobotEntry) -> tuple[str, ...]:

@@ -23,6 +23,7 @@ from typing import Any
 import numpy as np
 
 from onpath.app.common.end_signals import END_SIGNALS
+from onpath.app.common.own_laws import compiled_law
 from onpath.app.notebook.controller import Controller, controller
 from onpath.app.plant.datagrams import LARGEST
 from onpath.app.plant.plant_link import SILENCE, PlantLink, PlantReport
@@ -51,6 +52,7 @@ class ControllerPlan:
         at_fault, fastest, settings: see there.
         silence: of the plant, in control intervals, after which it ends.
         asked: time without a request, after which the process that asks counts as lost, [s].
+        own: laws of one's own among these, as on the command line, which another process must add.
     """
 
     robot: RobotEntry
@@ -61,6 +63,7 @@ class ControllerPlan:
     settings: Mapping[str, Any] = field(default_factory=dict[str, Any])
     silence: int = SILENCE
     asked: float = ASKED
+    own: Sequence[str] = ()
 
     def made(self) -> dict[str, Controller]:
         """The controllers by law."""
@@ -185,6 +188,8 @@ def serve(connection: Connection, plan: ControllerPlan, address: Address) -> Non
     for number in END_SIGNALS:  # of the terminal, say; the process that has started it handles them
         signal.signal(number, signal.SIG_IGN)
     try:
+        for law in plan.own:
+            compiled_law(law)
         controllers = plan.made()
         _warm_up(plan.made())
         with socket.socket(_family(address), socket.SOCK_DGRAM) as plant:

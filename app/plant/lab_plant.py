@@ -48,7 +48,7 @@ class PlantChoice:
         address: where its controller listens, once it has been started.
         laws: that can act on it; the first acts first.
         at_fault, fastest: see `onpath.controller`.
-        silence, asked: see `ControllerPlan`.
+        silence, asked, own: see `ControllerPlan`.
     """
 
     address: Address
@@ -57,6 +57,7 @@ class PlantChoice:
     fastest: float
     silence: int = SILENCE
     asked: float = ASKED
+    own: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -199,6 +200,7 @@ class LabPlant(LabDisplay):
             settings=values_of(parameters),
             silence=choice.silence,
             asked=choice.asked,
+            own=choice.own,
         )
         self._told = now
         self._coming = self._starts.submit(self._make, plan, choice.address)

@@ -950,7 +950,7 @@ figure-xi_means = ξ: Abstand der Spitze von der Bahn, mit Vorzeichen; 0 auf der
 figure-level_set_means = ξ = s(y): eine Funktion, die auf der Bahn 0 ist
 figure-eta1_means = η₂¹ = θ: Ort des nächsten Punktes, längs der Bahn
 figure-eta2_means = η₂²: wie schnell sich dieser Ort längs der Bahn bewegt
-figure-u_means = u: Drehmoment jedes Motors
+figure-u_means = u: was jeder Motor gibt
 figure-motor = Motor { $number }
 figure-law = Wechsel des Regelgesetzes
 figure-held = festgehalten

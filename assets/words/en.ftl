@@ -865,7 +865,7 @@ figure-xi_means = ξ: signed distance of the end-point from the path; 0 on the p
 figure-level_set_means = ξ = s(y): a function that is 0 on the path
 figure-eta1_means = η₂¹ = θ: place of the closest point, along the path
 figure-eta2_means = η₂²: how fast that place moves along the path
-figure-u_means = u: torque of each motor
+figure-u_means = u: what each motor gives
 figure-motor = motor { $number }
 figure-law = change of law
 figure-held = held back

@@ -23,6 +23,7 @@ from onpath.app.cli.control import ControlCommand
 from onpath.app.cli.driving import Driving, write_log
 from onpath.app.cli.main import run_command
 from onpath.app.common.end_signals import END_SIGNALS
+from onpath.app.common.own_laws import compiled_law
 from onpath.app.plant import controller_process
 from onpath.app.plant.controller_process import ControllerPlan, ControllerProcess
 from onpath.app.plant.datagrams import Measured, measurement, torque_in
@@ -30,6 +31,7 @@ from onpath.app.plant.plant_link import PlantReport
 from onpath.assets import asset_path
 from onpath.models.controller.functions import REFUSALS
 from onpath.models.studies.record_file import log_columns, read_records
+from onpath.models.systems.catalogue import ROBOTS
 from tests.support.checkout import ROOT
 from tests.support.lab_process import free_ports
 from tests.support.still_arm import StillArm
@@ -66,6 +68,24 @@ def beside() -> Iterator[ControllerProcess]:
     )
     process = ControllerProcess(plan, ("127.0.0.1", 0))
     yield process
+    process.close()
+
+
+@pytest.mark.usefixtures("forked")
+def test_a_law_of_ones_own_acts_in_the_other_process_too() -> None:
+    own, entry = "across = -K1*xi - K2*dxi; along = K5*(speed - dtheta)", ROBOTS["two_link_arm"]
+    settings = {"torque_limit": 5.0, "control_rate": RATE}
+    plan = ControllerPlan(
+        robot=entry,
+        paths=onpath.controller(entry, **settings).design.paths,
+        laws=(compiled_law(own),),
+        at_fault="damp",
+        fastest=5.0,
+        settings=settings,
+        own=(own,),
+    )
+    process = ControllerProcess(plan, ("127.0.0.1", 0))
+    assert process.report().law == plan.laws[0]
     process.close()
 
 
