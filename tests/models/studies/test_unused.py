@@ -24,9 +24,9 @@ SWITCHES: tuple[dict[str, Any], ...] = (
     *({}, {"task": "position"}, {"speed_profile": "sine"}, {"ramp": 5.0}),
     *({"encoder_counts": 2000.0}, {"sensor_noise": 1e-4}, {"tracker_integral": "on"}),
 )
-MAY_BE_IDLE = ("across", "at_limit", "torque_limit")
-"""A run may be the same though they select another loop: under a law that follows a clock, or if no
-torque is as large as the limit."""
+MAY_BE_IDLE = ("across", "at_limit", "torque_limit", "stiction")
+"""A run may be the same though they select another loop: under a law that follows a clock, if no
+torque is as large as the limit, or if each is larger than static friction where a joint rests."""
 
 
 def experiment(parameters: Parameters, robot: str) -> Experiment:
