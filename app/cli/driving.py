@@ -61,7 +61,7 @@ class Driving:
             Thread(target=self._read, name="typed", daemon=True).start()
         report = self._until_end()
         if not report.started:
-            print("It ends. No plant has measured.", flush=True)
+            print("It has ended. No plant has sent a measurement.", flush=True)
             return 0
         print(f"It has ended: {report.reason}. Its torque is now: {self._at_fault}.")
         print(_counted(report), flush=True)
@@ -87,7 +87,8 @@ class Driving:
     def _until_silent(self, report: PlantReport) -> bool:
         """Let it give the torque for a fault until the plant is silent, or somebody stops again.
 
-        Whether the plant is silent.
+        Returns:
+            whether the plant is silent.
         """
         answered, since = report.answered, time.monotonic()
         while time.monotonic() - since < TOLD:

@@ -53,8 +53,8 @@ class WriteWorksheet:
     lesson: Annotated[str, tyro.conf.Positional] = ""
     """Name or number of the lesson."""
     all: Path | None = None
-    """Write the worksheets and keys of all lessons as pages into this folder instead, which is made
-    if need be."""
+    """Write the worksheets and keys of all lessons as pages into this folder instead, and make the
+    folder if there is none."""
     html: Path | None = None
     """Write a page that prints as A4."""
     pdf: Path | None = None
@@ -62,7 +62,7 @@ class WriteWorksheet:
     key: Path | None = None
     """Write the key as a page."""
     variant: int = 1
-    """Order of the options, from 1 on, which sheet and key name; 0: that of the guide."""
+    """Number of the order of the options, printed on sheet and key; 0: the order in the guide."""
     lessons: Path | None = None
     """Folder of lessons; by default the built-in ones."""
     language: str = "en"

@@ -23,7 +23,8 @@ class Periodic:
 
     def __init__(self, name: str, every: float, act: Callable[[], object]) -> None:
         self._every, self._act = every, act
-        self._stop, self.awake, self.due = (threading.Event() for _ in range(3))
+        self._stop, self.awake = threading.Event(), threading.Event()
+        self.due = threading.Event()
         self.awake.set()
         self._thread = threading.Thread(target=self._run, name=name, daemon=True)
 

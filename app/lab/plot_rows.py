@@ -16,7 +16,7 @@ XI = ("xi", "xi_rate")
 """Fields whose unit is another one with a level set."""
 ALWAYS = ("distance", "theta", "theta_ref", "y", "force")
 """Fields that every frame of the data channel has; see app/channel/data_frame.py."""
-TORQUE = "N m"
+TORQUE = "N m"  # unit of a motor that turns
 AREA = 100.0  # a level set is 100 mm² where the distance to a circle of 50 mm is 1 mm
 
 Fields = tuple[tuple[str, int], ...]

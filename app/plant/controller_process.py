@@ -32,7 +32,7 @@ from onpath.models.paths.curves import Curve
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import RobotEntry
 
-ASKED = 1.0  # [s] without a request or a measurement, after which who sent them counts as lost
+ASKED = 1.0  # [s] of silence, after which the process that asks, or an ended plant, counts as lost
 LINGER = 10.0  # [s] for which a lost process's controller still answers
 START = "spawn"  # so that it shares nothing with the process that starts it
 PATIENCE = 60.0  # [s] for the controllers to be made
@@ -52,7 +52,7 @@ class ControllerPlan:
         at_fault, fastest, settings: see there.
         silence: of the plant, in control intervals, after which it ends.
         asked: time without a request, after which the process that asks counts as lost, [s].
-        own: laws of one's own among these, as on the command line, which another process must add.
+        own: the user's own laws among these, as on the command line; the process adds them.
     """
 
     robot: RobotEntry
@@ -202,7 +202,7 @@ def serve(connection: Connection, plan: ControllerPlan, address: Address) -> Non
             link = PlantLink(controllers, plan.silence)
             _Serving(connection, link, plant, plan.asked).run()
     except (ValueError, OSError) as error:
-        with suppress(OSError):  # nobody wants to know
+        with suppress(OSError):  # the process that asks is gone
             connection.send(error)
 
 

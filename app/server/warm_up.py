@@ -40,14 +40,15 @@ LATER = (
 )
 REST = 3.0  # [s] left to the first browser to open its lab
 TRIES = 5
-SHARE = 0.8  # of the time that is left to others
+SHARE = 0.8  # share of the time left to others
 
 
 def warm_up(loop_cache: LoopCache, course: Course, rest: float = REST) -> Thread:
     """After `rest` [s], in a thread: read lessons, compile loops, import modules, build robots.
 
-    A part that fails, for instance because too many files are open, is tried again after a rest. So
-    long, each part waits for late frames, and then leaves others `SHARE` of the time.
+    A part that fails, for instance because too many files are open, is tried again after a rest.
+    Each part waits while frames are late, and afterwards rests, so that others get `SHARE` of the
+    time; without `rest`, it does neither.
     """
 
     def make_loops() -> None:
@@ -77,14 +78,8 @@ def warm_up(loop_cache: LoopCache, course: Course, rest: float = REST) -> Thread
     return thread
 
 
-def build_robots(loop_cache: LoopCache) -> None:
-    """Build the equations, checks and drawings of all robots, before somebody chooses one."""
-    for entry in tuple(ROBOTS.values()):
-        build_robot(loop_cache, entry)
-
-
 def build_robot(loop_cache: LoopCache, entry: RobotEntry) -> None:
-    """Build the equations, checks and drawings of a robot."""
+    """Build the equations, checks and drawings of a robot, before somebody chooses it."""
     home = np.zeros((1, 2))
     lab = Lab(loop_cache, entry)
     take_page_snapshot(lab, 1.0)

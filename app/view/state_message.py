@@ -86,7 +86,9 @@ def state_message(
         drawn=seen.drawn,
         waits=words("say.waits") if run.waits else "",
         own=not snapshot.key.student,
-        rows=row_data(snapshot.key.fields, is_level_set, words, guesses, snapshot.key.motors),
+        rows=row_data(
+            snapshot.key.fields, is_level_set, words, guesses=guesses, motors=snapshot.key.motors
+        ),
         laws=list(run.laws.values()),
         shared=snapshot.shared,
         sent=list(snapshot.sent),

@@ -38,9 +38,9 @@ from onpath.models.studies.linear_model import (
 from onpath.models.systems.system import MechanicalSystem
 
 BLOCKS = 12  # parts of the motion, of which each is left out in turn
-BLOCK_QUANTILE = 2.201  # half of a 95 % interval in their standard errors: Student's t of 11
+BLOCK_QUANTILE = 2.201  # Student's t of 11 degrees of freedom at 97.5 %
 INDEPENDENT = 2.5  # windows that tell as much of white noise as one without overlap
-FEWEST_WINDOWS = 2.0  # that tell a value, with fewer of which it has no interval
+FEWEST_WINDOWS = 2.0  # fewer windows that tell a value give it no interval
 FEWEST_FREE = 3.0  # degrees of freedom, with fewer of which there is no interval
 HARDLY = 0.1  # share of a column that friction of slow motors leaves, below which it counts as zero
 MUCH = 0.05  # unexplained share of the torque above which values have no interval
@@ -61,8 +61,8 @@ class BaseParameter:
         low, high: interval that contains the true value with a probability of 95 %, whatever the
             friction of slow motors, however wide the transition of dry friction about standstill,
             and whether torques are smooth or constant from row to row; infinite if the record is
-            too short for one, or tells it in one window alone, or `MUCH` of the torque is not
-            explained.
+            too short for one, if fewer than `FEWEST_WINDOWS` windows tell the value, or if more
+            than `MUCH` of the torque is not explained.
         others: (name, multiple) of each further parameter of the sum.
     """
 
@@ -259,8 +259,8 @@ def _scaled(parts: list[RecordEquations], used: Sequence[int]) -> tuple[list[int
 def windows_that_tell(regressor: Array) -> Array:
     """How many windows tell each value: (Σ e)² / Σ e², with a window's sum e of squares.
 
-    A value that only one window tells fits this window whatever its error, so that no residual
-    shows the error.
+    If one window alone tells a value, the estimate fits that window whatever its noise is, and the
+    residual does not show the error.
 
     >>> alike, alone = np.ones(5), np.array([0, 0, 3.0, 0, 0])
     >>> windows_that_tell(np.stack([alike, alone], axis=1)[:, None]).tolist()
@@ -274,7 +274,7 @@ def windows_that_tell(regressor: Array) -> Array:
 
 
 def _with_noise(record: MotionRecord, sign: int) -> MotionRecord:
-    """A record with twice the errors of its coordinates and rates."""
+    """A record whose coordinates and rates have errors of twice the variance."""
     if record.noise is None:
         return record
     q, v = record.noise
@@ -289,13 +289,13 @@ def _solved(
 ) -> Estimate:
     """Estimates of the base parameters and the delay, with the first columns of the regressor.
 
-    Errors of the angles are in the regressor, too, and bias the estimates. What twice the errors
-    change in them is therefore taken back.
+    Errors of the angles are in the regressor, too, and bias the estimates. What errors of twice the
+    variance change in them is therefore taken back.
 
     Source: Cook and Stefanski, Journal of the American Statistical Association 89, 1994 (SIMEX).
 
     Args:
-        noisy: equations with twice the errors, and as many slow motors.
+        noisy: equations with errors of twice the variance, and the same slow motors.
     """
     moved, scaled, scale = _scaled(parts, range(len(names)))
     if not moved:
@@ -313,17 +313,17 @@ def _solved(
     values, _ = least_squares(regressor, torque)
     residual = np.asarray(torque - regressor @ values, dtype=float)
     unknown = sum(part.slow.torques for part in parts if part.slow)
-    found = [moved[i] for i in chosen], scale[chosen]
+    places, sizes = [moved[i] for i in chosen], scale[chosen]
     errors, by_blocks = _errors(regressor, residual, unknown), _block_errors(regressor, torque)
     wide = np.maximum(errors * _quantile(regressor, unknown), by_blocks * BLOCK_QUANTILE)
     errors = np.maximum(errors, by_blocks)
-    wide += _change_by_friction(parts, *found, regressor, torque)
+    wide += _change_by_friction(parts, places, sizes, regressor, torque)
     held = without_slow(parts, torque_of(parts, late, held=True))
     wide += np.abs(least_squares(regressor, held)[0] - values)
     unexplained = _share(residual, torque)
     wide += np.inf if unexplained > MUCH else 0.0
     wide[windows_that_tell(regressor) < FEWEST_WINDOWS] = np.inf
-    values = values - _change_by_noise(noisy, *found, late, regressor, values)
+    values = values - _change_by_noise(noisy, places, sizes, late, regressor, values)
 
     def parameter(i: int, name: str, size: float, sums: Sums = (), shift: float = 0.0):
         value = float(values[i]) / size + shift
@@ -378,7 +378,7 @@ def _change_by_noise(
     regressor: Array,
     values: Array,
 ) -> Array:
-    """How much twice the errors of the angles change each estimate.
+    """How much errors of the angles with twice the variance change each estimate.
 
     Args:
         noisy: see `_solved`.

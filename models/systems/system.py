@@ -83,8 +83,7 @@ class MechanicalSystem:
 
     @property
     def motor_units(self) -> tuple[str, ...]:
-        """The unit of each input, m times "N m" or "N": the latter if it pushes along a coordinate
-        that is a length."""
+        """The unit of each input: "N" if it acts on a coordinate that is a length, else "N m"."""
         along = [i for i, name in enumerate(self.coordinate_names) if name.endswith("_m")]
         turns = [all(self.actuation[i, j].is_zero() for i in along) for j in range(self.m)]
         return tuple(["N m" if turn else "N" for turn in turns])

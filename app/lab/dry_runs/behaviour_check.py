@@ -211,7 +211,7 @@ def played_fault(said: Behaviour, seen: Played) -> str:
     return f"the reason is another one; {heard}" if said.reason not in {"", *seen.said} else ""
 
 
-def page_fault(said: Behaviour, scene: StepSetup, words: Words, robot: str = "five_bar") -> str:
+def page_fault(said: Behaviour, scene: StepSetup, words: Words, robot: str) -> str:
     """How the page differs from what is said; empty if it does not.
 
     Args:

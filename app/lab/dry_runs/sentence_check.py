@@ -104,7 +104,7 @@ def _fault(each: Sentence, loop_cache: LoopCache) -> str:
     except ValueError as error:
         return str(error)
     if said.verb in ("plot", "drawing", "control", "label"):
-        return page_fault(said, each.scene, Words("en"))
+        return page_fault(said, each.scene, Words("en"), FIVE_BAR.name)
     if each.script is None:
         return "a play needs a script"
     seen = played(setup_of_scene(each.scene, FIVE_BAR.name), each.script, loop_cache)

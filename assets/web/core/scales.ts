@@ -1,6 +1,6 @@
 // The scale of a slider, and numbers as people type them.
 
-const KNEE = { share: 0.02, steps: 10 } // of the largest number; below the less a logarithmic scale through zero is nearly linear
+const KNEE = { share: 0.02, steps: 10 } // share of the largest number, and steps: below the smaller, a logarithmic scale through zero is nearly linear
 const FINE = 0.01 // step on a logarithmic scale, as a share of the number
 const NEAR = 0.012 // share of a slider's length within which it snaps to a meaningful number
 

@@ -339,9 +339,11 @@ def test_no_message_does_what_cannot_be_done_to_an_arm() -> None:
     simulation = bench.lab.simulation
     bench.run()
     before, began = values_of(simulation.parameters), simulation.time
-    for _ in range(150):
+    sets = [f'{{"do": "Set", "name": "{name}", "value": 0.2}}' for name in ("speed", "payload")]
+    for number in range(150):
+        sent = sets[number % 2] if number % 10 < 2 else str(wild_message(draw))
         try:
-            message = read_message(str(wild_message(draw)))
+            message = read_message(sent)
         except NoPageMessage:
             continue
         if isinstance(message, Command):
@@ -358,6 +360,7 @@ def test_no_message_does_what_cannot_be_done_to_an_arm() -> None:
     assert refused > 25 and simulation.time > began
     after = values_of(simulation.parameters)
     changed = [name for name, value in after.items() if value != before[name]]
+    assert "speed" in changed
     assert all(settable(name, simulation.parameters) for name in changed)
     assert simulation.entry.name == "two_link_arm" and simulation.measured == SIDE
     assert simulation.chosen_laws[SIDE] in CHOICE.laws

@@ -83,7 +83,8 @@ import casadi as ca
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
-from onpath.app.server.warm_up import build_robots
+from onpath.app.server.warm_up import build_robot
+from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.catalogue import ROBOTS
 
 made = []
@@ -106,7 +107,8 @@ def use_robots():
             print(name, made)
 
 cache = LoopCache()
-build_robots(cache)
+for entry in ROBOTS.values():
+    build_robot(cache, entry)
 ca.Function = Function
 thread = Thread(target=use_robots)
 thread.start()
