@@ -72,6 +72,8 @@ class WriteWorksheet:
         """Write the worksheet and the key."""
         from onpath.app.exports.guide import worksheet
 
+        if self.variant < 0:
+            raise ValueError(f"--variant {self.variant}: expected 0 or more")
         files = {"--html": self.html, "--pdf": self.pdf, "--key": self.key}
         if self.all is not None:
             return self._write_all(self.all, any((self.lesson, *files.values())))
@@ -94,7 +96,7 @@ class WriteWorksheet:
         made = {
             name: worksheet(course, folder, name, words, self.variant) for name in course.lessons
         }
-        into.mkdir(parents=True, exist_ok=True)
+        into.mkdir(exist_ok=True)
         for name, (page, key) in made.items():
             _write(page, into / f"{name}.html", None)
             _write(key, into / f"{name}-key.html", None)

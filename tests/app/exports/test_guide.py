@@ -217,12 +217,13 @@ def test_lessons_of_ones_own_have_a_guide_and_a_worksheet(tmp_path: Path) -> Non
     [
         (["guide"], "nothing to write"),
         (["worksheet", "1"], "nothing to write"),
-        (["guide", "--html", "/none/g.html"], "no folder"),
+        (["guide", "--html", "{}/g.html"], "no folder"),
         (["guide", "07-flexible", "--html", "{}"], "did you mean 07-flexible-link"),
         (["worksheet", "99", "--html", "{}"], "unknown lesson '99'"),
         (["worksheet", "--html", "{}"], "which lesson"),
         (["worksheet", "1", "--all", "."], "name neither one nor files"),
-        (["worksheet", "--all", "/none/sheets"], "No such file"),
+        (["worksheet", "--all", "{}/sheets"], "No such file"),
+        (["worksheet", "1", "--variant", "-1", "--html", "{}"], "expected 0 or more"),
         (["guide", "--language", "xx", "--html", "{}"], "there are de, en"),
     ],
 )
