@@ -44,7 +44,7 @@ class StoredMember(msgspec.Struct, frozen=True):
 
 
 class StoredClass(msgspec.Struct, frozen=True):
-    """A class; `push`, `members`, `display` and `votes` are checked one by one."""
+    """A class; `push`, `step`, `members`, `display` and `votes` are checked one by one."""
 
     joined: Count
     frozen: bool
@@ -52,6 +52,7 @@ class StoredClass(msgspec.Struct, frozen=True):
     push: Stored | None
     passes: Annotated[list[str], msgspec.Meta(max_length=10_000)]
     members: list[Any]
+    step: Stored | None = None
     pace: Pace | None = None
     display: Any = None
     votes: list[Any] = []
@@ -87,6 +88,7 @@ def to_stored(state: ClassState, now: float) -> Stored:
         frozen=orders.frozen,
         pushes=orders.pushes,
         push=None if orders.push is None else push_data(orders.push),
+        step=None if orders.step is None else push_data(orders.step),
         passes=sorted(state.passes),
         members=members,
         pace=orders.pace,
@@ -124,7 +126,14 @@ def from_stored(data: Stored | None, progress: Callable[[str], Progress], now: f
             lab, member = read
             members[lab] = replace(member, progress=progress(lab), active=now)
     joined = max([kept.joined, *(member.number for member in members.values())])
-    orders = Orders(kept.frozen, kept.pushes, read_push(kept.push), kept.pace)
+    step = read_push(kept.step)
+    orders = Orders(
+        frozen=kept.frozen,
+        pushes=kept.pushes,
+        push=read_push(kept.push),
+        step=step if isinstance(step, TakeStep) else None,
+        pace=kept.pace,
+    )
     return ClassState(
         joined=joined,
         orders=orders,

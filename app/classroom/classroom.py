@@ -83,12 +83,14 @@ class Orders:
         frozen: whether all labs are stopped.
         pushes: number of pushes so far.
         push: the last one, which later joiners receive as well; None if there is none.
+        step: the last step that was sent; a set-up after it leaves the class there.
         pace: the steps to which students are kept; None if they may go anywhere.
     """
 
     frozen: bool = False
     pushes: int = 0
     push: Push | None = None
+    step: TakeStep | None = None
     pace: Pace | None = None
 
 
@@ -415,14 +417,14 @@ class Classroom:
             asks: the items that the class votes on; see `Given.item`.
         """
         with self._lock:
+            new = replace(self.orders, pushes=self.orders.pushes + (push is not None), push=push)
             if isinstance(push, TakeStep):
                 self.show(Display(push.lesson, push.step))
                 self.close(self.open_votes)
                 self._ask(push, asks)
-            count, pace = self.orders.pushes + (push is not None), self.orders.pace
-            if isinstance(push, TakeStep) and pace and not pace.holds(push.lesson, push.step):
-                pace = None
-            new = replace(self.orders, pushes=count, push=push, pace=pace)
+                pace = new.pace
+                stays = pace is not None and pace.holds(push.lesson, push.step)
+                new = replace(new, step=push, pace=pace if stays else None)
             self.state = replace(self.state, orders=new)
         self.ordered()
 
@@ -498,7 +500,7 @@ class Classroom:
         """End the class: remove all members, and return their number. Code and key stay."""
         with self._lock:
             old = self.state
-            orders = replace(old.orders, frozen=False, push=None, pace=None)
+            orders = replace(old.orders, frozen=False, push=None, step=None, pace=None)
             self.claims.clear()
             self.state = replace(old, members={}, orders=orders, display=Display(), votes=())
             return len(old.members)

@@ -33,7 +33,7 @@ class StepsForAll:
         A lesson that is displayed and has not been sent begins with its first step. In a concept
         test everybody goes on by themselves.
         """
-        sent = orders.push if isinstance(orders.push, TakeStep) else None
+        sent = orders.step
         name, at = "" if sent is None else sent.route, self.shown(display)
         if by > 0 and at[1] == 0 and (sent is None or (sent.lesson, sent.step) != at):
             return TakeStep(*at, name)

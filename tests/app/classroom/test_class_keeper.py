@@ -299,6 +299,8 @@ def test_a_database_that_is_away_ends_no_class(
         ("members", [{"session": BOB, "number": 1, "name": "\u200b", "taken": 0}]),
         ("push", {"setup": {"rate": "fast"}}),
         ("push", {"lesson": 3}),
+        ("step", {"lesson": 3}),
+        ("step", {"setup": {}}),
     ],
 )
 def test_what_is_broken_is_left_out_and_the_class_goes_on(field: str, broken: Any) -> None:
@@ -309,7 +311,7 @@ def test_what_is_broken_is_left_out_and_the_class_goes_on(field: str, broken: An
         broken = [*stored["members"], *broken]
     read = from_stored({**stored, field: broken}, lambda _: NOTHING_DONE, 0.0)
     assert [member.name for member in read.members.values()] == ["Ada"]
-    assert read.orders.push is None
+    assert read.orders.push is None and read.orders.step is None
 
 
 @pytest.mark.parametrize("broken", [{}, {"members": 1}, {"passes": [1]}])

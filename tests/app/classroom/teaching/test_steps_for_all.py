@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec import structs
 
-from onpath.app.classroom.classroom import Classroom, Display
+from onpath.app.classroom.class_state import from_stored, to_stored
+from onpath.app.classroom.classroom import NOTHING_DONE, Classroom, ClassState, Display
 from onpath.app.classroom.teaching.lesson_labels import step_label
 from onpath.app.classroom.teaching.steps_for_all import StepsForAll
 from onpath.app.lab.commands import ChoosePath, CloseLesson, Set, TakeSetup, TakeStep
@@ -18,6 +21,7 @@ from onpath.app.lab.setups.capture import capture
 from onpath.app.lab.setups.setup import Setup
 from onpath.app.server.built_in_course import built_in_course
 from onpath.lessons.course import Course
+from onpath.lessons.pace import Pace
 from onpath.lessons.words import ENGLISH
 from tests.support.lab import do, loop_cache, run
 
@@ -43,6 +47,15 @@ def for_all(lesson: str, first: int = 0, last: int | None = None) -> list[tuple[
     return [(lesson, index) for index in indices if not steps[index].when]
 
 
+@cache
+def way_of(route: str) -> list[tuple[str, int]]:
+    """All steps of a route, or of the course, that everybody is meant to see."""
+    if not route:
+        return [each for name in COURSE.lessons for each in for_all(name)]
+    stops = COURSE.routes[route].stop
+    return [e for stop in stops for e in for_all(stop.lesson, stop.steps[0] - 1, stop.steps[1])]
+
+
 def led(room: Classroom, by: int) -> list[tuple[str, int]]:
     """Everywhere a class is led from where it is, until there is nothing more."""
     been = list[tuple[str, int]]()
@@ -53,7 +66,7 @@ def led(room: Classroom, by: int) -> list[tuple[str, int]]:
 
 
 def test_next_leads_through_all_lessons_and_back_leads_through_them_backwards() -> None:
-    room, everything = Classroom(), [each for name in COURSE.lessons for each in for_all(name)]
+    room, everything = Classroom(), way_of("")
     assert everything[:3] == [(everything[0][0], index) for index in (0, 1, 3)]
     assert led(room, 1) == everything
     assert led(room, -1) == everything[-2::-1]
@@ -61,13 +74,51 @@ def test_next_leads_through_all_lessons_and_back_leads_through_them_backwards() 
 
 @pytest.mark.parametrize("name", COURSE.routes)
 def test_on_a_route_next_leads_along_the_route(name: str) -> None:
-    stops = COURSE.routes[name].stop
-    route = [e for stop in stops for e in for_all(stop.lesson, stop.steps[0] - 1, stop.steps[1])]
-    room = Classroom()
+    route, room = way_of(name), Classroom()
     room.push(TakeStep(*route[0], name))
     assert led(room, 1) == route[1:]
     assert isinstance(room.orders.push, TakeStep) and room.orders.push.route == name
     assert led(room, -1) == route[-2::-1]
+
+
+def stored_and_read(room: Classroom) -> None:
+    room.restore(from_stored(to_stored(room.state, 0.0), lambda _: NOTHING_DONE, 0.0))
+
+
+ROOM = Classroom()  # another one would take a tenth of a second for its code
+BETWEEN: dict[str, Callable[[Classroom], object]] = {
+    "a set-up is sent": lambda room: room.push(TakeSetup(Setup())),
+    "nothing stands any more": lambda room: room.push(None),
+    "all stop": lambda room: room.freeze(True),
+    "all are kept": lambda room: room.keep_within(Pace(room.display.lesson, 0, 3)),
+    "answers are shown": lambda room: room.show(replace(room.display, shown=True)),
+    "a vote opens again": lambda room: room.open_again(()),
+    "the process ends": stored_and_read,
+}
+
+
+@settings(max_examples=40)
+@given(
+    st.sampled_from(["", *COURSE.routes]),
+    st.lists(st.sampled_from([1, 1, 1, -1, *BETWEEN]), max_size=30),
+)
+def test_whatever_happens_between_them_next_and_back_lead_on_from_the_last_step(
+    route: str, history: list[int | str]
+) -> None:
+    way, room, at = way_of(route), ROOM, 0
+    room.restore(ClassState())
+    room.push(TakeStep(*way[0], route))
+    for event in history:
+        if isinstance(event, str):
+            BETWEEN[event](room)
+            continue
+        step = STEPS.beside(room.display, room.orders, event)
+        if at + event not in range(len(way)):
+            assert step is None
+        else:
+            at += event
+            assert step == TakeStep(*way[at], route)
+            room.push(step)
 
 
 @pytest.mark.parametrize("test", COURSE.tests)
