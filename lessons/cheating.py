@@ -56,8 +56,8 @@ class Cheat:
 
 def cheats(lesson: Lesson, index: int, task: Task, reference: Reference) -> list[Cheat]:
     """The cheats to try at a task, without those that are fair or that an `Only` excludes."""
-    scene = lesson.scene_at(index)
-    entry = ROBOTS[scene.robot or lesson.front.robot]
+    setup = lesson.setup_at(index)
+    entry = ROBOTS[setup.robot or lesson.front.robot]
     solution = reference.solution
     others = [each for each in _with_another_control(solution, entry) if _may_pass(each, task)]
     tried = [*others, *_otherwise(solution, entry)]
@@ -128,8 +128,8 @@ def _otherwise(solution: Script, entry: RobotEntry) -> Iterator[Cheat]:
             script = replace(solution, do=(path, *others))
             yield Cheat("path", f"path = {name} in place of {what}", script)
     known = specs(entry.parameters)
-    for place, action in enumerate(solution.do):
-        before, after = solution.do[:place], solution.do[place + 1 :]
+    for i, action in enumerate(solution.do):
+        before, after = solution.do[:i], solution.do[i + 1 :]
         for name, value in (action.set or {}).items():
             for other in known[name].options if name in known else ():
                 if str(other) != str(value):

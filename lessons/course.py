@@ -382,11 +382,11 @@ def _differences(first: Lesson, other: Lesson, file: Path) -> Iterator[Problem]:
             yield Problem(str(file), theirs.line, f"{text}: not the same {', '.join(differs)}")
 
 
-def _without_words(scene: StepSetup | None) -> StepSetup | None:
-    """A scene without the texts of its marks."""
-    if scene is None:
+def _without_words(setup: StepSetup | None) -> StepSetup | None:
+    """A set-up without the texts of its marks."""
+    if setup is None:
         return None
-    return replace(scene, marks=tuple(replace(m, text=str(bool(m.text))) for m in scene.marks))
+    return replace(setup, marks=tuple(replace(m, text=str(bool(m.text))) for m in setup.marks))
 
 
 def _structure(step: Step) -> dict[str, object]:
@@ -395,7 +395,7 @@ def _structure(step: Step) -> dict[str, object]:
     return {
         "kind": step.kind,
         "block `step`": (step.optional, step.when),
-        "scene": _without_words(step.scene),
+        "scene": _without_words(step.setup),
         "script": step.script,
         "block `watch`": bool(step.watch),
         "block `notes`": bool(step.notes),

@@ -53,7 +53,7 @@ from onpath.lessons.vocabulary.blocks import (
     task_faults,
 )
 from onpath.lessons.vocabulary.fences import FENCES
-from onpath.lessons.vocabulary.setups import release_faults, scene_faults, script_faults
+from onpath.lessons.vocabulary.setups import release_faults, script_faults, setup_faults
 
 NO_MARK, NO_WORDS = StepMark(), Markup()
 KINDS: tuple[str, ...] = get_args(StepKind)
@@ -70,7 +70,7 @@ class _Draft:
     title: str
     line: int
     blocks: list[Block]
-    scene: StepSetup | None = None
+    setup: StepSetup | None = None
     script: Script | None = None
     mark: StepMark = NO_MARK
     watch: Markup = NO_WORDS
@@ -86,7 +86,7 @@ class _Draft:
             title=self.title,
             line=self.line,
             blocks=blocks,
-            scene=self.scene,
+            setup=self.setup,
             script=self.script,
             optional=self.mark.optional or bool(when),
             when=when,
@@ -120,7 +120,7 @@ class _Reader:
         self._text, self._behaviours = take_behaviours(text, self._complain)
         self._markdown = reader()
         self._robot = self._home = "five_bar"
-        self._scene = StepSetup()
+        self._setup = StepSetup()
         self._ids: set[str] = set()  # of tasks
         self._branches: dict[tuple[int, str], int] = {}  # step's line, condition -> its line
 
@@ -176,7 +176,7 @@ class _Reader:
         front = read_toml(content, 2, Front, self._complain)
         self._complain_all(2, _words_faults(content))
         if front is not None:
-            self._complain_all(1, scene_faults(StepSetup(robot=front.robot), front.robot))
+            self._complain_all(1, setup_faults(StepSetup(robot=front.robot), front.robot))
             self._complain_all(1, symbol_faults(front.symbols))
             self._robot = self._home = front.robot
             try:
@@ -248,7 +248,7 @@ class _Reader:
         if what == "step":
             draft.mark = self._checked(content, line, StepMark, lambda _: ()) or draft.mark
         elif what == "scene":
-            draft.scene = self._checked(content, line, StepSetup, self._scene_faults)
+            draft.setup = self._checked(content, line, StepSetup, self._setup_faults)
         elif what == "script":
             draft.script = self._checked(content, line, Script, self._script_faults)
         elif what == "equations":
@@ -273,10 +273,10 @@ class _Reader:
         except TextError as error:
             self._complain(line, str(error))
 
-    def _scene_faults(self, scene: StepSetup) -> Iterator[str]:
-        self._scene = scene.after(self._scene)
-        self._robot = self._scene.robot or self._home
-        return scene_faults(self._scene, self._robot)
+    def _setup_faults(self, setup: StepSetup) -> Iterator[str]:
+        self._setup = setup.after(self._setup)
+        self._robot = self._setup.robot or self._home
+        return setup_faults(self._setup, self._robot)
 
     def _script_faults(self, script: Script) -> Iterator[str]:
         yield from script_faults(script, self._robot)

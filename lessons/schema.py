@@ -334,7 +334,7 @@ class Step(msgspec.Struct, frozen=True):
 
     Attributes:
         line: first line in the file.
-        scene: state of the lab at the beginning; None for that of the step before.
+        setup: state of the lab at the beginning; None for that of the step before.
         script: actions that the lab performs by itself, or None.
         optional: whether it may be skipped; it does not count for the minutes and the end of the
             lesson.
@@ -349,7 +349,7 @@ class Step(msgspec.Struct, frozen=True):
     title: str
     line: int
     blocks: tuple[Block, ...]
-    scene: StepSetup | None = None
+    setup: StepSetup | None = None
     script: Script | None = None
     optional: bool = False
     when: str = ""
@@ -409,12 +409,12 @@ class Lesson(msgspec.Struct, frozen=True):
     keys: dict[str, tuple[str, ...]] = {}
     version: str = ""
 
-    def scene_at(self, index: int) -> StepSetup:
+    def setup_at(self, index: int) -> StepSetup:
         """The complete setup of a step, independent of how the student got there."""
-        scene = StepSetup()
+        setup = StepSetup()
         for step in self.steps[: index + 1]:
-            scene = step.scene.after(scene) if step.scene is not None else scene
-        return scene
+            setup = step.setup.after(setup) if step.setup is not None else setup
+        return setup
 
     def laws_shown(self, index: int) -> dict[str, str]:
         """Control laws, as in `Laws.named`, under which the prediction of a step is tested.
@@ -422,7 +422,7 @@ class Lesson(msgspec.Struct, frozen=True):
         They are those of the next step if it is a `run` step, else those of the step itself.
         """
         after = self.steps[index + 1 : index + 2]
-        return self.scene_at(index + (bool(after) and after[0].kind == "run")).laws.named
+        return self.setup_at(index + (bool(after) and after[0].kind == "run")).laws.named
 
     def tasks(self) -> list[Task]:
         """The tasks of all steps."""

@@ -49,10 +49,10 @@ class Controls:
     """
 
     def __init__(self, lesson: Lesson, index: int, task: Task) -> None:
-        scene = lesson.scene_at(index)
-        known = specs(ROBOTS[scene.robot or lesson.front.robot].parameters)
+        setup = lesson.setup_at(index)
+        known = specs(ROBOTS[setup.robot or lesson.front.robot].parameters)
         only = [check.names for check in task.check if isinstance(check, Only)]
-        shown = [each for name in scene.controls for each in GROUPS.get(name, (name,))]
+        shown = [each for name in setup.controls for each in GROUPS.get(name, (name,))]
         names = [name for name in shown if name in known and all(name in each for each in only)]
         settings = [check for check in task.check if isinstance(check, Setting)]
         wanted = {check.name: check.equals for check in settings if check.equals is not None}
@@ -107,8 +107,8 @@ def _turned(controls: Controls) -> Iterator[tuple[str, dict[str, Value]]]:
 
 def _hinted(lesson: Lesson, index: int, task: Task) -> Iterator[tuple[str, dict[str, Value]]]:
     """The settings that each hint names, and those of all hints together."""
-    scene = lesson.scene_at(index)
-    parameters = ROBOTS[scene.robot or lesson.front.robot].parameters()
+    setup = lesson.setup_at(index)
+    parameters = ROBOTS[setup.robot or lesson.front.robot].parameters()
     words, every = Words(lesson.language), dict[str, Value]()
     for number, hint in enumerate(task.hints, 1):
         text = safe(hint).striptags().replace(MINUS, "-")

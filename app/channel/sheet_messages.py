@@ -391,9 +391,9 @@ class ClassMessage(Struct, frozen=True, kw_only=True, tag_field="is", tag="class
     """The lab's place in a class: when the page connects, and when it changes.
 
     Attributes:
-        place: "none": there is nothing to join, or the page is a teacher's; "elsewhere": the server
-            has classes at other addresses; "guest": the page's address is that of a class, which
-            the lab has not joined; "member": it has.
+        membership: "none": there is nothing to join, or the page is a teacher's; "elsewhere": the
+            server has classes at other addresses; "guest": the page's address is that of a class,
+            which the lab has not joined; "member": it has.
         code: the class's, as on the projector; empty if the address has none.
         name: the nickname of a member.
         longest: how many visible characters a nickname may have.
@@ -406,7 +406,7 @@ class ClassMessage(Struct, frozen=True, kw_only=True, tag_field="is", tag="class
         linked: whether the member has given a word of one's own; "shared": so that another one has.
     """
 
-    place: Literal["none", "elsewhere", "guest", "member"]
+    membership: Literal["none", "elsewhere", "guest", "member"]
     code: str = ""
     name: str = ""
     longest: int = 0

@@ -271,11 +271,11 @@ class Classroom:
         with self._lock:
             self._asking.pop(number, None)
 
-    def throw_out(self, place: int) -> None:
-        """Revoke the pass of a phone, by its place among them, from 1 on."""
+    def throw_out(self, number: int) -> None:
+        """Revoke the pass of a phone, by its number among them, from 1 on."""
         phones = self.state.phones
-        if place in range(1, len(phones) + 1):
-            self._revoke(phones[place - 1])
+        if number in range(1, len(phones) + 1):
+            self._revoke(phones[number - 1])
 
     # Members
 

@@ -15,10 +15,10 @@ _seen: Counter[tuple[type, CodeType | None, int]] = Counter()
 
 def log_error(error: BaseException) -> None:
     """Log an error with its traceback when a line first raises it, then the 10th, 100th, … time."""
-    place = error.__traceback__
-    while place is not None and place.tb_next is not None:
-        place = place.tb_next
-    code, line = (place.tb_frame.f_code, place.tb_lineno) if place is not None else (None, 0)
+    raised = error.__traceback__
+    while raised is not None and raised.tb_next is not None:
+        raised = raised.tb_next
+    code, line = (raised.tb_frame.f_code, raised.tb_lineno) if raised is not None else (None, 0)
     _seen[type(error), code, line] += 1
     times = _seen[type(error), code, line]
     if times == 1:

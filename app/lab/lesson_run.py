@@ -5,6 +5,7 @@ Independent of viser. Called by the simulation thread only, from `app.lab.comman
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 from msgspec.structs import replace
@@ -49,6 +50,28 @@ class LessonLab(Protocol):
         ...
 
 
+@dataclass(frozen=True, slots=True)
+class Demonstration:
+    """The demonstration of a step while it is played.
+
+    Attributes:
+        player: of its script.
+        trace: of the predicted quantity, or None.
+        rate: simulated seconds per second before, if it changes them; otherwise None.
+    """
+
+    player: ScriptPlayer[Any]
+    trace: Trace | None
+    rate: float | None
+
+    def truth(self, simulation: Simulation) -> Truth | None:
+        """The curve of the predicted quantity until now, if there is one."""
+        if self.trace is None:
+            return None
+        self.trace.follow(simulation)
+        return self.trace.truth()
+
+
 class LessonRun(LessonState):
     """One student's progress through the lessons, on a lab.
 
@@ -60,15 +83,13 @@ class LessonRun(LessonState):
         super().__init__(course, progress)
         self._judge = TaskJudge(Beginning(0, 0.0))
         self._frames = 0
-        self._player: ScriptPlayer[Any] | None = None  # of the step's demonstration
-        self._trace: Trace | None = None  # of the quantity during the demonstration
+        self._demonstration: Demonstration | None = None
         self.before: Setup | None = None
-        self._rate: float | None = None  # before a demonstration that changes it
 
     @property
     def playing(self) -> bool:
         """Whether the lab is playing the step's demonstration."""
-        return self._player is not None
+        return self._demonstration is not None
 
     @property
     def verdicts(self) -> dict[str, list[Verdict]]:
@@ -78,7 +99,8 @@ class LessonRun(LessonState):
     @property
     def rate_before(self) -> float:
         """Simulated seconds per second before a demonstration that changes them; 1 without one."""
-        return 1.0 if self._rate is None else self._rate
+        played = self._demonstration
+        return 1.0 if played is None or played.rate is None else played.rate
 
     # Requests
 
@@ -225,14 +247,17 @@ class LessonRun(LessonState):
         if lesson is None:
             return
         self.check_unlocked()
-        rate = simulation.settings.rate if self._rate is None else self._rate
+        played = self._demonstration
+        rate = simulation.settings.rate if played is None or played.rate is None else played.rate
         self._set_up(lab, lesson, self.index)
         simulation.set(rate=rate)  # may be slow motion; the result is the same
         self._judge.begin = Beginning.now(simulation)
-        self._trace = Trace(quantity_of(found[1]), self._judge.begin) if found else None
-        self._player = lab.script = player
-        script = lesson.steps[self.index].script
-        self._rate = rate if script and any(action.rate for action in script.do) else None
+        lab.script, script = player, lesson.steps[self.index].script
+        self._demonstration = Demonstration(
+            player=player,
+            trace=Trace(quantity_of(found[1]), self._judge.begin) if found else None,
+            rate=rate if script and any(action.rate for action in script.do) else None,
+        )
         simulation.running = True
         self.version += 1
 
@@ -241,19 +266,18 @@ class LessonRun(LessonState):
     def follow(self, lab: LessonLab) -> None:
         """Evaluate the tasks periodically and detect a demonstration's end; call in every frame."""
         self._frames += 1
-        simulation = lab.simulation
-        if self._player is not None and lab.script is not self._player:
-            ended, self._player = self._player, None
-            if self._rate is not None:
-                simulation.set(rate=self._rate)
-            self._rate = None
-            if ended.finished:
-                self._note_truth(simulation)
+        simulation, played = lab.simulation, self._demonstration
+        if played is not None and lab.script is not played.player:
+            self._demonstration = None
+            if played.rate is not None:
+                simulation.set(rate=played.rate)
+            if played.player.finished:
+                self._note_truth(played.truth(simulation))
             self.version += 1
         if self._frames % CHECK_INTERVAL:
             return
-        if self._player is not None and self._trace is not None:
-            self._trace.follow(simulation)
+        if self._demonstration is not None and self._demonstration.trace is not None:
+            self._demonstration.trace.follow(simulation)
         self.judge(simulation)
 
     def judge(self, simulation: Simulation) -> None:
@@ -264,11 +288,12 @@ class LessonRun(LessonState):
 
     def truth(self, simulation: Simulation) -> Truth | None:
         """The actual curve of the predicted quantity, from now or from the last demonstration."""
-        found = self.prediction()
-        if found is None or self._player is None or self._trace is None:
-            return None if found is None else self.notes.truths.get(found[0])
-        self._trace.follow(simulation)
-        return self._trace.truth()
+        found, played = self.prediction(), self._demonstration
+        if found is None:
+            return None
+        if played is None or played.trace is None:
+            return self.notes.truths.get(found[0])
+        return played.truth(simulation)
 
     def _go(self, index: int, lab: LessonLab) -> None:
         lesson = self.lesson
@@ -291,13 +316,13 @@ class LessonRun(LessonState):
             self.progress = replace(self.progress, ended=True)
         self.note(step=index, seen=max(self.notes.seen, index + 1))
         lab.simulation.editor.forget_edits()  # an undo would bring the path of another step back
-        self._begin_again(lab, lesson.scene_at(index).running)
+        self._begin_again(lab, lesson.setup_at(index).running)
 
     def _begin_again(self, lab: LessonLab, running: bool) -> None:
         """Reset demonstration, tasks and undo for the step."""
         simulation = lab.simulation
         lab.script, simulation.undo_timeline, simulation.running = None, None, running
-        self._player = self._trace = self._rate = None
+        self._demonstration = None
         self._judge = TaskJudge(Beginning.now(simulation))
         self._lock(simulation)
 
@@ -306,11 +331,11 @@ class LessonRun(LessonState):
         if self.locked is not None:
             simulation.running = False
 
-    def _note_truth(self, simulation: Simulation) -> None:
+    def _note_truth(self, truth: Truth | None) -> None:
+        """Note that the open step's demonstration has been played, and what it showed."""
         found, truths = self.prediction(), self.notes.truths
-        if found is not None and self._trace is not None:
-            self._trace.follow(simulation)
-            truths = {**truths, found[0]: self._trace.truth()}
+        if found is not None and truth is not None:
+            truths = {**truths, found[0]: truth}
         played = tuple(dict.fromkeys((*self.notes.played, str(self.index))))
         self.note(truths=truths, played=played)
 

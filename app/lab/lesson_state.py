@@ -6,14 +6,14 @@ It does not depend on a lab; `app.lab.lesson_run` plays the steps on one.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from typing import Any
 
 from msgspec.structs import replace
 
 from onpath.app.common.product import product_version
-from onpath.app.lab.answers import kept_number, kept_text
+from onpath.app.lab.answers import kept_number, kept_text, with_answer
 from onpath.lessons.adaptive.branches import is_shown
 from onpath.lessons.concept_test.concept_test import own_test
 from onpath.lessons.course import Course
@@ -471,32 +471,22 @@ class LessonState:
         self._keep(lesson, replace(marked(lesson, given), right=is_right(block, given)), sent)
 
     def _keep(self, lesson: Lesson, given: Given, sent: Sent) -> None:
-        """Keep one more answer to an item, unless it was here before or says the same again.
-
-        Of those before the item was asked again, and of those after the last time, not all are
-        kept; see `_kept`.
-        """
+        """Keep one more answer to an item, unless it was here before; see `with_answer`."""
         notes = self._notes_on(lesson)
         if sent.key and any(each.key == sent.key for each in notes.given):
             return
-        before, asked = given_to(notes, given.item), notes.asked_again.count(given.item)
         new = replace(
             given,
-            attempt=_attempt(before, given.item),
             time=round(self.clock(), 3),
-            round=asked,
-            hints=notes.hints.get(given.item, 0),
             key=sent.key,
             lesson=lesson.version,
             product=self._product,
         )
-        if before and _says(before[-1]) == _says(new):
+        answers = with_answer(notes, new)
+        if answers is None:
             self.settle(sent.key)
             return
-        latest = [each for each in (*before, new) if each.round == asked]
-        first = [each for each in before if not each.round] if asked else []
-        others = (each for each in notes.given if each.item != given.item)
-        self._note_on(lesson, given=(*others, *_kept(first), *_kept(latest)))
+        self._note_on(lesson, given=answers)
         self.answers_given += 1
 
     def set_language(self, language: str) -> None:
@@ -556,30 +546,11 @@ def _latest_keys(progress: Progress) -> tuple[str, ...]:
     return tuple(each.key for each in sorted(given, key=lambda each: each.time)[-MOST_SENT:])
 
 
-def _attempt(before: Sequence[Given], item: str) -> int:
-    """The number of an answer; one takes the place of an answer that cannot be identified."""
-    first = 2 if item.endswith(SECOND_TRY) else 1
-    return before[-1].attempt + (not before[-1].lost) if before else first
-
-
 def _is_of(item: str, asked: Collection[str]) -> bool:
     """Whether an answer is one to some questions, or a second try at one."""
     question = item.removesuffix(SECOND_TRY)
     tried = item != question and question.partition(".")[0] in asked
     return question in asked or tried
-
-
-def _says(given: Given) -> tuple[object, ...]:
-    return given.round, given.answer, given.number, given.text, given.way, given.lost
-
-
-def _kept(given: Sequence[Given]) -> list[Given]:
-    """The first answer, the first that was not skipped, the second one where it is judged (what is
-    right is told after it), and the last one."""
-    first = next((each for each in given if not each.is_skipped), None)
-    second = given[1:2] if given and given[0].right is not None else ()
-    wanted = (*given[:1], first, *second, *given[-1:])
-    return [each for each in given if each in wanted]
 
 
 def _block(lesson: Lesson, index: int, block: int) -> Block | None:

@@ -18,7 +18,7 @@ import numpy as np
 from onpath.models.arrays import Array
 
 MEASUREMENT, TORQUE = b"OPM1", b"OPT1"
-_HEAD, _ANSWER = struct.Struct("<4sId"), struct.Struct("<4sIq")
+HEAD, ANSWER = struct.Struct("<4sId"), struct.Struct("<4sIq")
 LARGEST = 2048  # [B] of a datagram; what is larger is cut, and then unreadable
 
 
@@ -46,29 +46,14 @@ class Measured:
 
 def measured_in(datagram: bytes, n: int) -> Measured | None:
     """The measurement in a datagram from a plant with n coordinates; None if there is none."""
-    numbers, rest = divmod(len(datagram) - _HEAD.size, 8)
+    numbers, rest = divmod(len(datagram) - HEAD.size, 8)
     if rest or numbers not in (n, 2 * n) or not datagram.startswith(MEASUREMENT):
         return None
-    _, sequence, t = _HEAD.unpack_from(datagram)
-    values = np.frombuffer(datagram, "<f8", offset=_HEAD.size).astype(float)
+    _, sequence, t = HEAD.unpack_from(datagram)
+    values = np.frombuffer(datagram, "<f8", offset=HEAD.size).astype(float)
     return Measured(sequence, t, values[:n], values[n:] if numbers == 2 * n else None)
-
-
-def measurement(measured: Measured) -> bytes:
-    """The datagram of a measurement."""
-    numbers = measured.q if measured.v is None else np.concatenate([measured.q, measured.v])
-    head = _HEAD.pack(MEASUREMENT, measured.sequence, measured.t)
-    return head + numbers.astype("<f8").tobytes()
 
 
 def torque_datagram(sequence: int, code: int, torque: Array) -> bytes:
     """The datagram of torques, [N m]; code: 0, or why they are what the user chose for a fault."""
-    return _ANSWER.pack(TORQUE, sequence, code) + torque.astype("<f8").tobytes()
-
-
-def torque_in(datagram: bytes, m: int) -> tuple[int, int, Array] | None:
-    """Sequence, code and torques in a datagram for a plant with m motors; None: there are none."""
-    if len(datagram) != _ANSWER.size + 8 * m or not datagram.startswith(TORQUE):
-        return None
-    _, sequence, code = _ANSWER.unpack_from(datagram)
-    return sequence, code, np.frombuffer(datagram, "<f8", offset=_ANSWER.size).astype(float)
+    return ANSWER.pack(TORQUE, sequence, code) + torque.astype("<f8").tobytes()

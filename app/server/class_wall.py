@@ -29,7 +29,7 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.snapshot import Motion, PathSnapshot
 from onpath.app.lab.snapshots.take_snapshot import take_motion, take_page_snapshot
-from onpath.app.server.first_view import FirstView
+from onpath.app.server.first_projection import FirstProjection
 from onpath.app.server.lab_registry import LabRegistry
 from onpath.app.server.page_data import BEAT, EVERY, lit_message
 from onpath.app.server.site_address import is_local
@@ -101,7 +101,7 @@ class ClassWall(LabDisplay):
         self._scheduled: ScheduledLab | None = None
         self._source = FrameSource(tells_past=False)
         self._thread, self._computing = WorkThread("wall"), WorkThread("wall's truth")
-        self._first_view = FirstView(self._thread.submit)
+        self._first_projection = FirstProjection(self._thread.submit)
         self._answers = dict[str, ClassAnswers]()  # by language
         self._looked = dict[tuple[str, str], WallMessage]()  # by `WallPage.place`
         self._next, self._busy = 0.0, False
@@ -176,7 +176,7 @@ class ClassWall(LabDisplay):
         if monotonic() >= self._next and not self._busy:
             self._next, self._busy = monotonic() + LOOKS, True
             self._thread.submit(partial(self._look, lab))
-        seen = self._first_view.of(lab.simulation.robot)
+        seen = self._first_projection.of(lab.simulation.robot)
         if seen is None:
             return
         states = {

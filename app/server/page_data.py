@@ -44,7 +44,7 @@ from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.snapshot import Motion, PathSnapshot
 from onpath.app.lab.snapshots.take_snapshot import take_lesson
 from onpath.app.scene.client_scene import ClientScene
-from onpath.app.server.first_view import FirstView
+from onpath.app.server.first_projection import FirstProjection
 from onpath.app.server.page_class import PageClass, is_of_class
 from onpath.app.server.page_context import PageContext
 from onpath.app.server.page_files import PageFiles
@@ -84,7 +84,7 @@ class PageData:
         self._source, self._opened = FrameSource(), 0
         self._path: PathSnapshot | None = None
         self._robot: Robot | None = None
-        self._view: Projection | None = None  # the last one, with a scene or without
+        self._projection: Projection | None = None  # the last one, with a scene or without
         self._language = ""
         self._state: StateMessage | None = None
         self._class: ClassMessage | None = None
@@ -93,7 +93,7 @@ class PageData:
         self._thread = WorkThread("page")
         teaching = context.teaching
         submit, teaches = self._thread.submit, teaching is not None
-        self._first_view = FirstView(submit)
+        self._first_projection = FirstProjection(submit)
         self._log = PageLog(submit)
         self._form = PageForm(own.post, submit, context.switches, teaches=teaches)
         self._taught: PageClass | None = None
@@ -287,10 +287,10 @@ class PageData:
 
         While a picture is being built, the one before counts; None if there was none.
         """
-        seen = self._first_view.of(robot) if scene is None else scene.seen(snapshot)
-        if seen is None and self._view is not None:
-            seen = replace(self._view, drawn=False)
-        self._view = seen
+        seen = self._first_projection.of(robot) if scene is None else scene.seen(snapshot)
+        if seen is None and self._projection is not None:
+            seen = replace(self._projection, drawn=False)
+        self._projection = seen
         return seen
 
     def _answer(self, answer: Struct) -> None:

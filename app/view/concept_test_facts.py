@@ -20,7 +20,7 @@ class AnsweredQuestion:
     """A question, and the option chosen each time that it was asked; None for no answer.
 
     Attributes:
-        chosen: before the course or after it (a place in `SITTINGS`) -> index of the option.
+        chosen: before the course or after it (an index of `SITTINGS`) -> index of the option.
         treated: number of the lesson and of its step that treat it; None if that is not said.
     """
 
@@ -56,8 +56,8 @@ def results_of(run: LessonState) -> ConceptTestResults | None:
     scores = [sum(right_in(forms[each[0]], each[1])) if each else None for each in sat]
     numbers, answered = run.course.numbers(), list[AnsweredQuestion]()
     chosen = {
-        place: (each[0], chosen_in(forms[each[0]], each[1]))
-        for place, each in enumerate(sat)
+        when: (each[0], chosen_in(forms[each[0]], each[1]))
+        for when, each in enumerate(sat)
         if each is not None
     }
     asked = [list(questions(form).values()) for form in forms]
@@ -65,7 +65,7 @@ def results_of(run: LessonState) -> ConceptTestResults | None:
         for form in dict.fromkeys(form for form, _ in chosen.values()):
             block = asked[form][index]
             page = block.treated
-            times = {place: options[index] for place, (f, options) in chosen.items() if f == form}
+            times = {when: options[index] for when, (f, options) in chosen.items() if f == form}
             treated = (numbers.get(page.lesson, ""), page.step) if page else None
             answered.append(AnsweredQuestion(block, times, treated))
     return ConceptTestResults(

@@ -232,7 +232,7 @@ def _step(
         "script": None if step.script is None else script_data(step.script),
         "blocks": [known.get(block_index, {"kind": "hidden"}) for block_index in range(count)],
         "figure": -1,
-        "plots": lesson.scene_at(index).plots if parts else (),
+        "plots": lesson.setup_at(index).plots if parts else (),
     }
 
 

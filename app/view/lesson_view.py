@@ -50,7 +50,7 @@ class LessonView(LessonState):
     def setup(self) -> StepSetup:
         """Set-up of the open step."""
         lesson = self.lesson
-        return NO_SETUP if lesson is None else lesson.scene_at(self.index)
+        return NO_SETUP if lesson is None else lesson.setup_at(self.index)
 
     def text(self, block_index: int, block: Text) -> Markup | None:
         """A text of the open step with the student's numbers; None if it belongs to other answers.

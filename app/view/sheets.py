@@ -114,7 +114,7 @@ def _stored(words: Words, days: int, class_days: int, today: date) -> str:
 
 def class_message(
     words: Words,
-    place: str | None,
+    code: str | None,
     name: str,
     *,
     longest: int,
@@ -128,7 +128,7 @@ def class_message(
     """The lab's place in a class.
 
     Args:
-        place: code of the class that the page's address has, which may be empty; None: there is no
+        code: of the class that the page's address has, which may be empty; None: there is no
             class, or the page is a teacher's.
         name: nickname of a member, or empty.
         longest: see `ClassMessage`.
@@ -141,13 +141,13 @@ def class_message(
         away: see `ClassMessage.away` and `asked`.
         own: what the student has told.
     """
-    if place is None:
-        return ClassMessage(place="none")
-    if not place:
-        return ClassMessage(place="elsewhere")
+    if code is None:
+        return ClassMessage(membership="none")
+    if not code:
+        return ClassMessage(membership="elsewhere")
     return ClassMessage(
-        place="member" if name else "guest",
-        code=place.upper(),
+        membership="member" if name else "guest",
+        code=code.upper(),
         name=name,
         longest=longest,
         stored=_stored(words, days, class_days, today),

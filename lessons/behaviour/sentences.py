@@ -64,7 +64,7 @@ FENCE = re.compile(r"\s*(`{3,}|~{3,})\s*(\S*)")
 END = re.compile(r"(?<=[.!?;:|])(?:[\"”“)*]*)\s+")
 
 
-class Sentence(Data, frozen=True, rename={"where": "in"}):
+class Sentence(Data, frozen=True, rename={"where": "in", "setup": "scene"}):
     """A sentence that says what the lab does, and that no mark in its text plays.
 
     Attributes:
@@ -72,7 +72,7 @@ class Sentence(Data, frozen=True, rename={"where": "in"}):
         en, de: a part of the sentence, without line breaks; empty if it is not found in a language.
         reason: why it is not played.
         plays: what the lab does, as in a mark; instead of a reason.
-        scene: set-up of the lab that plays it.
+        setup: set-up of the lab that plays it.
         script: what happens there.
     """
 
@@ -81,7 +81,7 @@ class Sentence(Data, frozen=True, rename={"where": "in"}):
     de: str = ""
     reason: str = ""
     plays: str = ""
-    scene: StepSetup = StepSetup()
+    setup: StepSetup = StepSetup()
     script: Script | None = None
 
     def part(self, language: str) -> str:

@@ -64,10 +64,10 @@ def own_test(name: str, tests: Collection[str], progress: Progress, first: int) 
         return sitting
     if opened := taken(progress, sitting):
         return opened
-    place = SITTINGS.index(sitting)
-    if opened := taken(progress, SITTINGS[1 - place]):
+    when = SITTINGS.index(sitting)
+    if opened := taken(progress, SITTINGS[1 - when]):
         return name_of(sitting, 1 - form_of(opened))
-    return name_of(sitting, first ^ place)
+    return name_of(sitting, first ^ when)
 
 
 def dealt(who: str) -> int:
@@ -85,8 +85,8 @@ def dealt_in_class(code: str, number: int) -> int:
         code: of the class.
         number: serial number of the student, from 1.
     """
-    pair, place = divmod(number - 1, 2)
-    return dealt(f"{code} {pair}") ^ place
+    pair, second = divmod(number - 1, 2)
+    return dealt(f"{code} {pair}") ^ second
 
 
 def lacks_of_test(steps: Sequence[Step]) -> Iterator[str]:

@@ -37,10 +37,10 @@ def items(forms: Forms, students: Iterable[Person]) -> list[list[Item]]:
     sat = [list[list[Sitting]](([], [])) for _ in forms]
     for each in students:
         seen = set[int]()
-        for place, sitting in enumerate((each.before, each.after)):
+        for when, sitting in enumerate((each.before, each.after)):
             if sitting is not None and sitting.form not in seen:
                 seen.add(sitting.form)
-                sat[sitting.form][place].append(sitting)
+                sat[sitting.form][when].append(sitting)
     return [
         _items([np.array([s.right for s in group], dtype=float) for group in both if group])
         or [Item(0, None, None)] * len(questions(form))

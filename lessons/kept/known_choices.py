@@ -23,9 +23,9 @@ def marked(lesson: Lesson, given: Given) -> Given:
     """An answer with the keys of its option and its reason, by which it is identified later."""
     if given.answer is None:
         return given
-    place = 0 if given.answer.times else given.answer.option
+    option = 0 if given.answer.times else given.answer.option
     why_mark = _mark(lesson, why_key(given.item), given.answer.reason)
-    return replace(given, mark=_mark(lesson, given.item, place), why_mark=why_mark)
+    return replace(given, mark=_mark(lesson, given.item, option), why_mark=why_mark)
 
 
 def _mark(lesson: Lesson, key: str, index: int | None) -> str:

@@ -1,4 +1,4 @@
-"""Faults of scenes, scripts and actions."""
+"""Faults of set-ups, scripts and actions."""
 
 from __future__ import annotations
 
@@ -38,33 +38,33 @@ from onpath.models.systems.parameter_specs import checked, unknown_name
 from onpath.models.systems.parameters import Parameters
 
 
-def scene_faults(scene: StepSetup, robot: str) -> Iterator[str]:
-    """The faults of a scene."""
-    if scene.robot:
-        yield from one_of(scene.robot, ROBOTS, "robot")
-    if scene.path:
-        yield from one_of(scene.path, presets(), "path")
-    yield from _drawing_faults(scene)
-    entry = ROBOTS.get(scene.robot or robot)
+def setup_faults(setup: StepSetup, robot: str) -> Iterator[str]:
+    """The faults of a step's set-up."""
+    if setup.robot:
+        yield from one_of(setup.robot, ROBOTS, "robot")
+    if setup.path:
+        yield from one_of(setup.path, presets(), "path")
+    yield from _drawing_faults(setup)
+    entry = ROBOTS.get(setup.robot or robot)
     if entry is not None:
-        yield from _law_faults(scene.laws, entry)
-        faults = list(_setting_faults(scene.set, entry))
-        yield from faults or _path_faults(scene, entry)
-        for name in scene.controls:
+        yield from _law_faults(setup.laws, entry)
+        faults = list(_setting_faults(setup.set, entry))
+        yield from faults or _path_faults(setup, entry)
+        for name in setup.controls:
             yield from one_of(name, [*CONTROLS, *step_specs(entry.parameters)], "control")
 
 
-def _drawing_faults(scene: StepSetup) -> Iterator[str]:
-    """The faults of a scene's plots and drawings."""
-    for name in scene.plots:
+def _drawing_faults(setup: StepSetup) -> Iterator[str]:
+    """The faults of a set-up's plots and drawings."""
+    for name in setup.plots:
         yield from one_of(name, PLOTS, "plot")
-    if len(set(scene.plots)) < len(scene.plots) or len(scene.plots) > MOST_PLOTS:
+    if len(set(setup.plots)) < len(setup.plots) or len(setup.plots) > MOST_PLOTS:
         yield f"plot: one, or a list of {MOST_PLOTS} different ones"
-    for name in scene.show:
+    for name in setup.show:
         yield from one_of(name, DRAWINGS, "drawing")
-    if len(scene.marks) > MOST_MARKS:
+    if len(setup.marks) > MOST_MARKS:
         yield f"marks: at most {MOST_MARKS}"
-    for mark in scene.marks:
+    for mark in setup.marks:
         yield from _mark_faults(mark)
 
 
@@ -125,13 +125,13 @@ def action_faults(action: Action, robot: str) -> Iterator[str]:
         yield from _start_faults(action.start)
 
 
-def _path_faults(scene: StepSetup, entry: RobotEntry) -> Iterator[str]:
-    """The faults of a scene's path, and of its start on that path."""
-    name, parameters = scene.path or "circle", entry.parameters()
+def _path_faults(setup: StepSetup, entry: RobotEntry) -> Iterator[str]:
+    """The faults of a set-up's path, and of its start on that path."""
+    name, parameters = setup.path or "circle", entry.parameters()
     design = presets().get(name)
     if design is None:
         return
-    parameters = with_values(parameters, {n: v for n, v in scene.set.items() if n not in SETTINGS})
+    parameters = with_values(parameters, {n: v for n, v in setup.set.items() if n not in SETTINGS})
     try:
         check_level_set(parameters, design.curve)
     except ValueError as error:
@@ -140,8 +140,8 @@ def _path_faults(scene: StepSetup, entry: RobotEntry) -> Iterator[str]:
     faults = curve_faults(entry.make(parameters).margin, curve)
     for fault in faults:
         yield f"path {name!r}: {fault.reason}"
-    if scene.start.numbers and not faults:
-        yield from _start_faults(scene.start, (entry, parameters, curve))
+    if setup.start.numbers and not faults:
+        yield from _start_faults(setup.start, (entry, parameters, curve))
 
 
 def _start_faults(

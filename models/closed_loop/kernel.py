@@ -191,15 +191,15 @@ def _bases(system: MechanicalSystem, kind: Kind, law: Law) -> ca.Function:
     """`Kernel.basis`, at the predicted closest point and at the law's reference."""
     state_symbol, state = kept_layout(system, kind, law.memory).symbols("state")
     settings_symbol, settings = settings_layout(system, kind).symbols("settings")
-    places = [predicted(state, settings)]
+    thetas = [predicted(state, settings)]
     if law.reference is not None:
-        places.append(law.reference(clock_at(kind, law, state, settings, settings["look_ahead"])))
+        thetas.append(law.reference(clock_at(kind, law, state, settings, settings["look_ahead"])))
     results: list[ca.SX]
     if kind.spline:
-        found = [spline_basis(theta, kind.closed, settings["pieces"]) for theta in places]
+        found = [spline_basis(theta, kind.closed, settings["pieces"]) for theta in thetas]
         results = [ca.horzcat(*each) for each in zip(*found, strict=True)]
     else:
-        results = [ca.horzcat(*(basis(theta, kind.closed) for theta in places))]
+        results = [ca.horzcat(*(basis(theta, kind.closed) for theta in thetas))]
     outputs = ca.cse([ca.densify(each) for each in results])
     return ca.Function("bases", [state_symbol, settings_symbol], outputs)
 

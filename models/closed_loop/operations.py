@@ -48,10 +48,10 @@ MATHEMATICS = tuple(name for name in LIBRARY if name != "erf")
 
 def _called(name: str) -> Operation:
     """A call of a function of the library."""
-    places = range(LIBRARY[name])
-    given = ", ".join(f"double {{{i}}}" for i in places)
-    stack = " ".join([*map(str, places), name]) if name in MATHEMATICS else ""
-    arguments = ", ".join(f"{{{i}}}" for i in places)
+    operands = range(LIBRARY[name])
+    given = ", ".join(f"double {{{i}}}" for i in operands)
+    stack = " ".join([*map(str, operands), name]) if name in MATHEMATICS else ""
+    arguments = ", ".join(f"{{{i}}}" for i in operands)
     return Operation(f"{{v}} = call double @{name}({given})", stack, f"{name}({arguments})")
 
 

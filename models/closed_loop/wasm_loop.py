@@ -123,9 +123,9 @@ def _translated(name: str, function: ca.Function, owner: str) -> WasmFunction:
         else:
             found = _filled(code, [values[operand] for operand in operands])
         if uses[i] > 1:
-            place, numbers = pointers + numbers, numbers + 1
-            body += [*found, ("local.set", place)]
-            found = [("local.get", place)]
+            index, numbers = pointers + numbers, numbers + 1
+            body += [*found, ("local.set", index)]
+            found = [("local.get", index)]
         values[into[0]] = found
     return WasmFunction(name, pointers, numbers, [*body, *results, *reversed(stores)])
 
@@ -169,10 +169,10 @@ def _repeated(name: str, step: int, scan: Scan) -> WasmFunction:
             each += [rows, *index, ("i32.const", DOUBLE * scan.row), "i32.mul", "i32.add"]
         each += [state, results, ("call", step)]
     on = list[Part]()
-    for place, numbers in ((2, scan.stride), (3, scan.step.numel_out(1))):
+    for pointer, numbers in ((2, scan.stride), (3, scan.step.numel_out(1))):
         if numbers:
-            by = [("i32.const", DOUBLE * numbers), "i32.add", ("local.set", place)]
-            on += [("local.get", place), *by]
+            by = [("i32.const", DOUBLE * numbers), "i32.add", ("local.set", pointer)]
+            on += [("local.get", pointer), *by]
     count = [left, ("i32.const", 1), "i32.sub", ("local.set", 4)]
     again = [left, ("i32.const", 0), "i32.gt_s", ("br_if", 0)]
     return WasmFunction(name, 5, 0, ["loop", *each, *on, *count, *again, "end"])

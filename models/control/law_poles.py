@@ -77,12 +77,12 @@ def _of_typed(text: str, parameters: Parameters) -> tuple[Channel, Channel] | Me
     if across[3] and along[:3].any():
         return Message("behaviour.coupled")
     k1, k2, k3 = across[:3].tolist()
-    place = 0.0
+    k4 = 0.0
     if parameters.task == "position":  # there the wanted speed is K4/K5 (θ_ref - θ), see `rate_at`
-        place = -float(along[4]) * parameters.K4 / max(parameters.K5, LEAST_GAIN)
+        k4 = -float(along[4]) * parameters.K4 / max(parameters.K5, LEAST_GAIN)
     return (
         channel("across", parameters, (k1, k2, k3), "xvia" if k3 else "xva"),
-        channel("along", parameters, (place, float(along[3]), 0.0), "xva" if place else "va"),
+        channel("along", parameters, (k4, float(along[3]), 0.0), "xva" if k4 else "va"),
     )
 
 

@@ -69,9 +69,9 @@ def c_function(
 
 def operations_in(function: ca.Function) -> int:
     """The number of operations on numbers in a call of an SX function."""
-    places = (ca.OP_CONST, ca.OP_INPUT, ca.OP_OUTPUT)
+    moves = (ca.OP_CONST, ca.OP_INPUT, ca.OP_OUTPUT)
     codes = map(function.instruction_id, range(function.n_instructions()))
-    return sum(code not in places for code in codes)
+    return sum(code not in moves for code in codes)
 
 
 def fields_of(layout: Layout, base: str) -> Place:

@@ -41,25 +41,25 @@ def words_of(bare: str, line: int) -> Words:
     """
     if macro := _MACRO.match(bare):
         return {macro[1]: 0.0}
-    words, place, end = Words(), 0, len(bare.rstrip())
-    while place < end:
-        found = _WORD.match(bare, place)
+    words, at, end = Words(), 0, len(bare.rstrip())
+    while at < end:
+        found = _WORD.match(bare, at)
         if found is None:
-            raise _refusal(bare, place, line)
+            raise _refusal(bare, at, line)
         letter, number = found[1], found[2]
         name = letter
         if letter in "GM":
             whole, _, rest = number.partition(".")
             name += whole.lstrip("0") or "0" if not rest.strip("0") else number.lstrip("0")
         elif letter not in LETTERS and letter not in "NO":
-            raise _refusal(bare, place, line)
+            raise _refusal(bare, at, line)
         value = float(number)
         if not isfinite(value):
-            raise _refusal(bare, place, line)
+            raise _refusal(bare, at, line)
         if name in words:
-            raise _refusal(bare, place, line, repeats=True)
+            raise _refusal(bare, at, line, repeats=True)
         words[name] = value
-        place = found.end()
+        at = found.end()
         if letter == "M" and value >= FIRST_OWN and name not in ("M280", "M300", "M98", "M99"):
             break  # temperatures, texts for a display
     return words
@@ -73,8 +73,8 @@ def column_of(bare: str, name: str) -> str:
     return "1"
 
 
-def _refusal(bare: str, place: int, line: int, repeats: bool = False) -> CodedError:
-    begin = place + len(bare[place:]) - len(bare[place:].lstrip())
+def _refusal(bare: str, at: int, line: int, repeats: bool = False) -> CodedError:
+    begin = at + len(bare[at:]) - len(bare[at:].lstrip())
     word = re.match(r"\S[^A-Z\s]*", bare[begin:])
     text = repr((word[0] if word else bare[begin:])[:20])
     column = str(begin + 1)

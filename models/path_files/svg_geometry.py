@@ -119,13 +119,13 @@ def transform(text: str | None, origin: str | None, size: Size) -> Array:
     """
     if text is None or text.strip() in ("", "none"):
         return np.identity(3)
-    product, place = np.identity(3), 0
-    while place < len(text):
-        found = _FUNCTION.match(text, place)
+    product, at = np.identity(3), 0
+    while at < len(text):
+        found = _FUNCTION.match(text, at)
         if found is None:
-            raise ValueError(f"{text[place : place + 30]!r} is no transform")
+            raise ValueError(f"{text[at : at + 30]!r} is no transform")
         product = product @ _function(found[1].lower(), found[2], size)
-        place = found.end()
+        at = found.end()
     if origin is not None and (words := origin.split()):
         at = _origin(words, size)
         return shift(*at) @ product @ shift(-at[0], -at[1])

@@ -2,12 +2,9 @@
 
 With the unit tangent T and unit normals of σ, a ball that touches the curve at σ(a) on its side N
 and reaches σ(b) has the radius |d|² / (2 N · d), d = σ(b) - σ(a). Along the normal N the closest
-point is σ(a) up to the smallest of these radii,
-
-    w(a) = min over b with N · d > 0 of |d|² / (2 N · d),
-
-the local width on that side. As b approaches a, the radius becomes that of curvature. The smallest
-local width on any side is the width of the tube, in which the closest point is unique everywhere:
+point is σ(a) up to the smallest of these radii. As b approaches a, the radius becomes that of
+curvature. The smallest one on any side is the width of the tube, in which the closest point is
+unique everywhere:
 
     W = min over a, b of |d|² / (2 |d - (T · d) T|).
 
@@ -83,22 +80,6 @@ def curve_frames(curve: Curve, theta: Array) -> CurveFrames:
     return CurveFrames(theta, curve.at(theta), _normals(_tangents(curve, theta)))
 
 
-def local_widths(curve: Curve, frames: CurveFrames) -> tuple[Array, Array]:
-    """Local widths along the first normal and against it, shape (n,) each, [m].
-
-    They are infinite where nothing is on that side.
-    """
-    gaps = curve.at(_compared(curve)) - frames.sigma[:, None]
-    normal = frames.normals[:, 0]
-    side = (gaps * normal[:, None]).sum(-1)
-    second, squared = curve.at(frames.theta, 2), (curve.at(frames.theta, 1) ** 2).sum(-1)
-    bend = (second * normal).sum(-1) / squared
-    left, right = (
-        np.minimum(_radii(gaps, s * side).min(axis=1), _radius_of(s * bend)) for s in (1, -1)
-    )
-    return left, right
-
-
 def offset(frames: CurveFrames, xi: Array) -> Array:
     """The points with these coordinates across the curve: σ(θ) + Σ ξ_i N_i.
 
@@ -142,8 +123,3 @@ def _radii(gaps: Array, side: Array) -> Array:
     squared = (gaps**2).sum(-1)
     counts = (side > TINY) & (squared > TINY)
     return np.where(counts, squared / (2 * np.where(counts, side, 1.0)), np.inf)
-
-
-def _radius_of(bend: Array) -> Array:
-    """The radius of curvature on one side: 1 / bend where bend > 0, else infinity."""
-    return np.where(bend > TINY, 1 / np.where(bend > TINY, bend, 1.0), np.inf)

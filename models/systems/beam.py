@@ -44,15 +44,6 @@ class BeamModes:
         """Frequency ratios ω_j / ω_1 = (β_j / β_1)², shape (N,)."""
         return (self.roots / self.roots[0]) ** 2
 
-    def frequencies(self, rigidity: float, density: float) -> Array:
-        """ω_j = β_j² sqrt(EI / ρ) / l², shape (N,), [rad/s].
-
-        Args:
-            rigidity: EI, [N m²].
-            density: ρ, [kg/m].
-        """
-        return self.roots**2 * np.sqrt(rigidity / density) / self.length**2
-
     def shapes(self, s: Array) -> Array:
         """φ_j(s), shape (...,) -> (..., N), [m^-1/2].
 

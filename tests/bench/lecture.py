@@ -239,9 +239,9 @@ class Lecture:
         async def come(number: int) -> Page:
             await asyncio.sleep(within * number / count)
             page = self.page()
-            await until(lambda: page.told.get("class", {}).get("place") == "guest", "a seat")
+            await until(lambda: page.told.get("class", {}).get("membership") == "guest", "a seat")
             await page.tell({"is": "join", "code": "", "name": f"Student {number}"})
-            await until(lambda: page.told["class"]["place"] == "member", "a member")
+            await until(lambda: page.told["class"]["membership"] == "member", "a member")
             return page
 
         self.students = list(await asyncio.gather(*map(come, range(count))))

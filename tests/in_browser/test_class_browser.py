@@ -226,7 +226,7 @@ def test_a_student_deletes_everything_of_their_own_from_their_browser(tabs: Clas
     wait_for(lambda: code not in room.members())
     wait_for(lambda: student.server.registry.find(code) is None)
     wait_for(
-        lambda: student.page.evaluate("onpathLab.connected && onpathLab.seat.place") == "guest"
+        lambda: student.page.evaluate("onpathLab.connected && onpathLab.seat.membership") == "guest"
     )
     assert [each.name for each in room.members().values()] == [NAMES[0]]
 

@@ -82,9 +82,9 @@ def texts(step: Step) -> list[str]:
 
 def assert_open(pupil: Pupil, step: Step) -> None:
     """Assert that this step is open, with its robot and plots, and says nothing too early."""
-    tab, run, scene = pupil.tab, pupil.tab.lab.lessons, pupil.lesson.scene_at(pupil.index)
+    tab, run, setup = pupil.tab, pupil.tab.lab.lessons, pupil.lesson.setup_at(pupil.index)
     assert run.waits == bool(step.predictions()) and not (run.waits and tab.simulation.running)
-    assert tab.simulation.entry.name == (scene.robot or pupil.lesson.front.robot)
+    assert tab.simulation.entry.name == (setup.robot or pupil.lesson.front.robot)
     if step.kind == "run":
         absent = missing(tab, *texts(step))
         assert run.has_played() or len(absent) == len(texts(step))
@@ -103,7 +103,7 @@ def assert_shown(pupil: Pupil, step: Step) -> None:
     if any(isinstance(block, Sketch) for block in before.predictions()):  # in the plots' place
         expect(tab.page.locator(".board, .compared canvas").first).to_be_visible()
         return
-    wanted = pupil.lesson.scene_at(pupil.index).plots
+    wanted = pupil.lesson.setup_at(pupil.index).plots
     is_level_set = tab.simulation.parameters.across == LEVEL_SET
     rows = row_data(tab.simulation.sample_layout.fields, is_level_set, ENGLISH)
     named = {row["name"]: f"{row['label']} [{row['unit']}]" for row in rows}

@@ -45,7 +45,7 @@ def test_every_explanation_leads_to_the_literature(language: str) -> None:
 def test_every_explanation_has_something_to_touch(language: str) -> None:
     for lesson, index, step in explanations(language):
         links = [link for b in step.blocks if isinstance(b, Text) for link in b.links]
-        assert links or lesson.scene_at(index).controls, (lesson.name, step.title)
+        assert links or lesson.setup_at(index).controls, (lesson.name, step.title)
 
 
 @pytest.mark.parametrize("belief", ASKED)

@@ -47,7 +47,7 @@ def test_a_lesson_is_read(tmp_path: Path) -> None:
         *("play", "predict", "run", "predict", "run", "explain", "task", "quiz"),
     ]
     play = lesson.steps[0]
-    assert play.scene is not None and play.scene.set == {"K1": 300}
+    assert play.setup is not None and play.setup.set == {"K1": 300}
     text = play.blocks[0]
     assert isinstance(text, Text) and "<math" in text.html and "<em>waits</em>" in text.html
     assert text.links[0].label == "set K3 to 100"

@@ -62,7 +62,7 @@ def test_a_lesson_opens_with_a_thing_to_touch(lesson: Lesson) -> None:
     first = lesson.steps[0]
     text = " ".join(block.html for block in first.blocks if isinstance(block, Text))
     found = re.search(TOUCH[lesson.language], text)
-    assert first.scene is not None and first.scene.controls
+    assert first.setup is not None and first.setup.controls
     assert found is not None and word_count(text[: found.start()]) <= OPENING
 
 

@@ -117,7 +117,7 @@ def play_on_site(lesson: Lesson, index: int, plays: list[tuple[Script, Task | No
     figure, step = step_figure(lesson, index), lesson.steps[index]
     references = {task.id: Reference(Script(), Script()) for task in step.tasks()}
     site = site_step(lesson, index, references, ENGLISH)
-    laws = lesson.scene_at(index).laws.named
+    laws = lesson.setup_at(index).laws.named
     data = {
         "figure": site.figure,
         "remade": site.remade,

@@ -9,10 +9,11 @@ from typing import Self
 
 import numpy as np
 
-from onpath.app.plant.datagrams import Measured, measurement, torque_in
+from onpath.app.plant.datagrams import Measured
 from onpath.models.arrays import Array
 from onpath.models.paths.curves import circle
 from onpath.models.systems.catalogue import ROBOTS
+from tests.support.plant_end import measurement, torque_in
 
 PATIENCE = 60.0  # [s]; only ends a test that would hang
 

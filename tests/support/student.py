@@ -246,12 +246,12 @@ class Student:
     @property
     def is_member(self) -> bool:
         """Whether the page says that its lab is in the class."""
-        return self.seat.get("place") == "member"
+        return self.seat.get("membership") == "member"
 
     @property
     def may_join(self) -> bool:
         """Whether the page asks for a nickname."""
-        return self.seat.get("place") == "guest"
+        return self.seat.get("membership") == "guest"
 
     def join(self, name: str, code: str = "") -> dict[str, Any]:
         """Ask to join a class; returns what has come of it: see `SeatAnswer`.

@@ -60,7 +60,7 @@ def run_picture(lesson: Lesson, index: int, truth: Truth, words: Words) -> RunPi
     if sketch is None:
         most = max(map(abs, (*truth.tracker, *truth.follower)), default=1.0)
         sketch = Sketch("", truth.quantity, step.script.until, _top(most))
-    names = robot_names(lesson.scene_at(index).laws.named, words)
+    names = robot_names(lesson.setup_at(index).laws.named, words)
     uri = draw_prediction(sketch, None, truth, words, names)
     peaks = [
         f"{names[robot]} {words.number(max(getattr(truth, robot), key=abs), 3)}"

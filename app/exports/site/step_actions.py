@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from onpath.app.exports.standalone.figure_choice import FigureChoice
-from onpath.app.exports.standalone.setting_places import Unsupported, page_values
+from onpath.app.exports.standalone.setting_numbers import Unsupported, page_values
 from onpath.app.lab.external_forces import displaced
 from onpath.lessons.action_schema import Action, RobotName, Script, Value
 from onpath.lessons.record import ROBOTS

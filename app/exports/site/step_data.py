@@ -62,7 +62,7 @@ def site_step(
     data = {
         "kind": step.kind,
         "optional": step.optional,
-        "running": lesson.scene_at(index).running,
+        "running": lesson.setup_at(index).running,
         "script": script,
         "values": _values(step, figure),
         "plots": figure.plots,
@@ -100,7 +100,7 @@ def site_step(
 def _values(step: Step, figure: StepFigure) -> dict[str, Any]:
     """The settings that the step's tasks check, as they are when the step begins."""
     parameters, choice = figure.choice.parameters, figure.choice
-    scene: dict[str, Any] = {
+    others: dict[str, Any] = {
         "path": next(iter(choice.paths)),
         "robot": choice.robot,
         "left": short_name(choice.laws[0]),
@@ -114,7 +114,7 @@ def _values(step: Step, figure: StepFigure) -> dict[str, Any]:
     known = {
         name: values[name] for name in (*names, *choice.sliders, *choice.changing) if name in values
     }
-    return {**known, **scene}
+    return {**known, **others}
 
 
 def _block(
@@ -126,5 +126,5 @@ def _block(
         if block.when:
             data["when"] = answers_meant(block.when, lesson.steps, index, part.block_index)
     elif isinstance(block, Task) and part.here:
-        data |= task_data(block, figure.choice.parameters, lesson.scene_at(index).laws.named, words)
+        data |= task_data(block, figure.choice.parameters, lesson.setup_at(index).laws.named, words)
     return data

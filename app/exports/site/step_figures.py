@@ -19,12 +19,12 @@ from onpath.app.exports.standalone.figure_data import (
     stop_texts,
 )
 from onpath.app.exports.standalone.figure_form import figure_form
-from onpath.app.exports.standalone.setting_places import (
-    SettingPlaces,
+from onpath.app.exports.standalone.setting_numbers import (
+    SettingNumbers,
     Unsupported,
     Used,
     page_values,
-    setting_places,
+    setting_numbers,
 )
 from onpath.app.view.forms import drawing_field, setting_field
 from onpath.lessons.action_schema import Action, SceneMark, Script, StepSetup
@@ -64,7 +64,7 @@ class StepFigure:
         drawings: what is drawn besides the robots.
         marks: texts and arrows beside the robots.
         plots: plots that the step shows besides the distance.
-        places: where the parameters act that change on the page.
+        numbers: where the parameters act that change on the page.
     """
 
     choice: FigureChoice
@@ -72,7 +72,7 @@ class StepFigure:
     drawings: tuple[str, ...]
     marks: tuple[SceneMark, ...]
     plots: tuple[str, ...]
-    places: SettingPlaces
+    numbers: SettingNumbers
 
     def script(self, script: Script | None) -> dict[str, Any] | None:
         """A script as data; None if there is none, or only the lab can play it."""
@@ -137,30 +137,30 @@ def step_figure(
     Raises:
         ValueError: a figure cannot show its set-up.
     """
-    scene, step = lesson.scene_at(index), lesson.steps[index]
-    robot = scene.robot or lesson.front.robot
+    setup, step = lesson.setup_at(index), lesson.steps[index]
+    robot = setup.robot or lesson.front.robot
     actions = _actions(step)
-    laws = tuple({**DEFAULT_LAWS, **scene.laws.named}.values())
-    first, *others = _paths(lesson, index, scene)
+    laws = tuple({**DEFAULT_LAWS, **setup.laws.named}.values())
+    first, *others = _paths(lesson, index, setup)
     curves = {first: presets()[first].curve}
-    own = {name: value for name, value in scene.set.items() if name in SETTINGS}
-    values = {name: value for name, value in scene.set.items() if name not in own}
+    own = {name: value for name, value in setup.set.items() if name in SETTINGS}
+    values = {name: value for name, value in setup.set.items() if name not in own}
     values |= given
-    figure = chosen(robot, laws, curves, values, sliders=(), controls=_controls(scene, step))
+    figure = chosen(robot, laws, curves, values, sliders=(), controls=_controls(setup, step))
     figure = replace(
         figure,
         paths={**curves, **_possible(figure, others)},
         scripted=tuple(
             law_name(law) for each in actions if each.laws for law in each.laws.named.values()
         ),
-        drawings=_drawings(scene, figure),
+        drawings=_drawings(setup, figure),
         bends=any(action.move for action in actions),
-        begins=Start(**scene.start.numbers),
+        begins=Start(**setup.start.numbers),
     )
-    known, wanted = specs(type(figure.parameters)), dict.fromkeys(_expanded(scene.controls))
+    known, wanted = specs(type(figure.parameters)), dict.fromkeys(_expanded(setup.controls))
     used = _used(actions)
     settable = dict.fromkeys(name for name in (*wanted, *used) if name in known)
-    figure, places = _changing(figure, settable, used)
+    figure, numbers = _changing(figure, settable, used)
     remade = _remade(figure, lesson, wanted)
     figure = replace(figure, remade={name: each for name, each in remade.items() if len(each) > 1})
     sliders = tuple(name for name in wanted if name in (*figure.changing, *figure.remade))
@@ -172,10 +172,10 @@ def step_figure(
     return StepFigure(
         choice=replace(figure, sliders=sliders),
         lacking=tuple(lacking),
-        drawings=scene.show,
-        marks=scene.marks,
-        plots=scene.plots,
-        places=places,
+        drawings=setup.show,
+        marks=setup.marks,
+        plots=setup.plots,
+        numbers=numbers,
     )
 
 
@@ -191,17 +191,17 @@ def _remade(
     for name in wanted:
         if name in known and known[name].options and name not in figure.changing:
             options = known[name].options
-            places = [options.index(check.equals) for check in named if check.name == name]
-            places.append(options.index(value_of(own, name)))
-            remade[name] = options[min(places) : max(places) + 1]
+            chosen = [options.index(check.equals) for check in named if check.name == name]
+            chosen.append(options.index(value_of(own, name)))
+            remade[name] = options[min(chosen) : max(chosen) + 1]
     return remade
 
 
-def _controls(scene: StepSetup, step: Step) -> tuple[str, ...]:
+def _controls(setup: StepSetup, step: Step) -> tuple[str, ...]:
     """The controls of a step's figure."""
     if step.kind == "predict":
         return ()
-    return (*ALWAYS, "drag") if "editor" in scene.controls else ALWAYS
+    return (*ALWAYS, "drag") if "editor" in setup.controls else ALWAYS
 
 
 def figure_of(figure: StepFigure, words: Words) -> dict[str, Any]:
@@ -212,7 +212,7 @@ def figure_of(figure: StepFigure, words: Words) -> dict[str, Any]:
         stop_texts(choice, law, curve, "alpha" in choice.changing, words)
         for law in choice.every_law
     ]
-    changes = changes_data(choice, figure.places)
+    changes = changes_data(choice, figure.numbers)
     views = [view_field(name, value, words) for name, value in figure.views.items()]
     own = {name: value_of(choice.parameters, name) for name in choice.remade}
     return {
@@ -272,10 +272,10 @@ def lacking_words(figure: StepFigure, words: Words) -> dict[str, str]:
     }
 
 
-def _paths(lesson: Lesson, index: int, scene: StepSetup) -> list[str]:
+def _paths(lesson: Lesson, index: int, setup: StepSetup) -> list[str]:
     """The step's path, and those that its links and script choose."""
     actions = _actions(lesson.steps[index])
-    paths = [scene.path or "circle", *(action.path for action in actions if action.path)]
+    paths = [setup.path or "circle", *(action.path for action in actions if action.path)]
     return list(dict.fromkeys(paths))
 
 
@@ -293,11 +293,11 @@ def _possible(figure: FigureChoice, names: Iterable[str]) -> dict[str, Curve]:
     return {n: c for n, c in curves.items() if not curve_faults(margin, raised(c, parameters))}
 
 
-def _drawings(scene: StepSetup, figure: FigureChoice) -> tuple[str, ...]:
+def _drawings(setup: StepSetup, figure: FigureChoice) -> tuple[str, ...]:
     """What may be drawn besides the robots."""
-    names = SWITCHES if "show" in scene.controls else scene.show
-    larger = ("larger",) if {"larger", "flexible"} & {*scene.controls} else ()
-    zone = ("zone",) if "editor" in scene.controls else ()
+    names = SWITCHES if "show" in setup.controls else setup.show
+    larger = ("larger",) if {"larger", "flexible"} & {*setup.controls} else ()
+    zone = ("zone",) if "editor" in setup.controls else ()
     return (*names, *larger, *zone)
 
 
@@ -329,12 +329,12 @@ def _used(actions: Iterable[Action]) -> Used:
 
 def _changing(
     figure: FigureChoice, names: Iterable[str], used: Used
-) -> tuple[FigureChoice, SettingPlaces]:
+) -> tuple[FigureChoice, SettingNumbers]:
     """The figure on whose page as many of some parameters change as can, and where they act."""
     left = tuple(name for name in names if len(page_values(figure, name, used)) > 1)
     while True:
         figure = replace(figure, changing=left)
-        places = setting_places(figure, used)
-        if places.names >= {*left}:
-            return figure, places
-        left = tuple(name for name in left if name in places.names)
+        numbers = setting_numbers(figure, used)
+        if numbers.names >= {*left}:
+            return figure, numbers
+        left = tuple(name for name in left if name in numbers.names)

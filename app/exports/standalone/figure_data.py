@@ -22,7 +22,7 @@ from onpath.app.exports.standalone.figure_module import (
 )
 from onpath.app.exports.standalone.figure_words import figure_words
 from onpath.app.exports.standalone.loop_variants import variants_of
-from onpath.app.exports.standalone.setting_places import SettingPlaces, setting_places
+from onpath.app.exports.standalone.setting_numbers import SettingNumbers, setting_numbers
 from onpath.app.lab.path_editor import BLEND, HALVINGS
 from onpath.app.lab.plot_rows import row_data
 from onpath.app.lab.plot_samples import sample_layout
@@ -89,7 +89,7 @@ def figure_data(
     return {
         **common_data(figure, words, numbers or figure_numbers(figure)),
         "form": figure_form(figure, words),
-        "changes": changes_data(figure, setting_places(figure, {})),
+        "changes": changes_data(figure, setting_numbers(figure, {})),
         "drawings": drawings_data(figure, (), (), words),
         "controls": figure.controls,
     }
@@ -332,11 +332,11 @@ def _outline(figure: FigureChoice, curve: Curve, path: Curve) -> list[float]:
     return _rounded(place(robot.frame.lift(path.at(theta)).T).full().T)
 
 
-def changes_data(figure: FigureChoice, places: SettingPlaces) -> dict[str, Any]:
+def changes_data(figure: FigureChoice, numbers: SettingNumbers) -> dict[str, Any]:
     """What may change on the page: first values, and where they act."""
-    values = {name: value_of(figure.parameters, name) for name in sorted(places.names)}
-    tables = [asdict(table) for table in places.tables]
-    return {"values": values, "places": places.places, "tables": tables}
+    values = {name: value_of(figure.parameters, name) for name in sorted(numbers.names)}
+    tables = [asdict(table) for table in numbers.tables]
+    return {"values": values, "indices": numbers.indices, "tables": tables}
 
 
 def loops_data(figure: FigureChoice) -> dict[str, Any]:

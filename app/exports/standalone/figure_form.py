@@ -9,7 +9,7 @@ import msgspec
 
 from onpath.app.channel.form_messages import FormField, FormGroup, FormMessage, FormNeed
 from onpath.app.exports.standalone.figure_choice import FigureChoice
-from onpath.app.exports.standalone.setting_places import page_values
+from onpath.app.exports.standalone.setting_numbers import page_values
 from onpath.app.view.forms import choice_field, setting_field, with_limit
 from onpath.lessons.labels import path_label
 from onpath.lessons.sides import law_titles

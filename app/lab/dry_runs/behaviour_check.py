@@ -50,7 +50,7 @@ CONTROLS = {
     "laws": "laws.left",
     "sign": "export.lines",
 }
-"""Control of a scene -> key of its name on the page."""
+"""Control of a step -> key of its name on the page."""
 BUTTONS = (
     *("run.run", "run.pause", "run.step", "run.reset", "run.let_both_go"),
     *("gains.pulse", "design.undo", "past.go_on", "controls.help", "lesson.lessons", "laws.about"),
@@ -169,7 +169,7 @@ def page_faults(lesson: Lesson, text: str) -> Iterator[tuple[int, str]]:
     for index, said in _behaviours(lesson):
         if said.verb not in OF_PAGE:
             continue
-        if fault := page_fault(said, lesson.scene_at(index), words, robot):
+        if fault := page_fault(said, lesson.setup_at(index), words, robot):
             yield said.line, f"{said.text!r}: {fault}"
     yield from name_faults(text, lesson.language)
 
@@ -211,23 +211,23 @@ def played_fault(said: Behaviour, seen: Played) -> str:
     return f"the reason is another one; {heard}" if said.reason not in {"", *seen.said} else ""
 
 
-def page_fault(said: Behaviour, scene: StepSetup, words: Words, robot: str) -> str:
+def page_fault(said: Behaviour, setup: StepSetup, words: Words, robot: str) -> str:
     """How the page differs from what is said; empty if it does not.
 
     Args:
-        robot: if the scene names none.
+        robot: if the step names none.
     """
     written = re.sub(r"[*_“”„\"]", "", said.text).strip(" .,:")
     if said.verb == "label":
         labels = labels_of(said.name, words)
         return "" if written in labels else f"on the page it is {_listed(labels)}"
-    shown = {"plot": scene.plots, "drawing": scene.show, "control": scene.controls}[said.verb]
+    shown = {"plot": setup.plots, "drawing": setup.show, "control": setup.controls}[said.verb]
     if (said.name in shown) == said.absent:
         return f"the {said.verb}s of the step are {_listed(shown)}"
     if said.verb == "plot" and not said.absent:
         name = said.name
         if name == "torques":
-            entry = ROBOTS[scene.robot or robot]
+            entry = ROBOTS[setup.robot or robot]
             name = motor_row(entry.make(entry.parameters()).system.motor_units)
         label = words("plot.phase" if name == "phase" else f"axis.{name}")
         if not any(word in written.lower() for word in _stems(label)):

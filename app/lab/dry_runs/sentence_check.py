@@ -13,7 +13,7 @@ from onpath.app.lab.dry_runs.behaviour_check import (
     played_fault,
 )
 from onpath.app.lab.loops.loop_cache import LoopCache
-from onpath.app.lab.setups.step_setup import setup_of_scene
+from onpath.app.lab.setups.step_setup import setup_from
 from onpath.assets.messages import DEFAULT, catalogue
 from onpath.lessons.behaviour.marks import read_behaviour
 from onpath.lessons.behaviour.sentences import (
@@ -104,8 +104,8 @@ def _fault(each: Sentence, loop_cache: LoopCache) -> str:
     except ValueError as error:
         return str(error)
     if said.verb in ("plot", "drawing", "control", "label"):
-        return page_fault(said, each.scene, Words("en"), FIVE_BAR.name)
+        return page_fault(said, each.setup, Words("en"), FIVE_BAR.name)
     if each.script is None:
         return "a play needs a script"
-    seen = played(setup_of_scene(each.scene, FIVE_BAR.name), each.script, loop_cache)
+    seen = played(setup_from(each.setup, FIVE_BAR.name), each.script, loop_cache)
     return played_fault(said, seen)

@@ -45,11 +45,6 @@ class Identification:
         self._under_way = None
         return future.result()
 
-    @property
-    def is_under_way(self) -> bool:
-        """Whether a result is still to come."""
-        return self._under_way is not None and not self._under_way.done()
-
 
 def _learn(future: Future[Learned], robot: Robot, history: HistoryCopy) -> None:
     begun = time.monotonic()

@@ -16,23 +16,23 @@ def setup_of(lesson: Lesson, index: int) -> Setup:
     Args:
         index: of the step.
     """
-    return setup_of_scene(lesson.scene_at(index), lesson.front.robot)
+    return setup_from(lesson.setup_at(index), lesson.front.robot)
 
 
-def setup_of_scene(scene: StepSetup, robot: str) -> Setup:
-    """The set-up of a scene.
+def setup_from(setup: StepSetup, robot: str) -> Setup:
+    """The set-up of a lab for that of a step.
 
     Args:
-        robot: if the scene names none.
+        robot: if the step names none.
     """
-    robot, path = scene.robot or robot, Path(scene.path or Path().name)
-    own: dict[str, Any] = {f"start_{name}": value for name, value in scene.start.numbers.items()}
-    own |= {name: scene.set[name] for name in settings_kept("code", True) if name in scene.set}
-    settings = {name: scene.set[name] for name in settings_kept("code") if name in scene.set}
-    parameters = {n: value for n, value in scene.set.items() if n not in own | settings}
+    robot, path = setup.robot or robot, Path(setup.path or Path().name)
+    own: dict[str, Any] = {f"start_{name}": value for name, value in setup.start.numbers.items()}
+    own |= {name: setup.set[name] for name in settings_kept("code", True) if name in setup.set}
+    settings = {name: setup.set[name] for name in settings_kept("code") if name in setup.set}
+    parameters = {n: value for n, value in setup.set.items() if n not in own | settings}
     return Setup(
         robot=robot,
         robots={robot: RobotSetup(parameters, path, own)},
-        laws=scene.laws.named,
+        laws=setup.laws.named,
         settings=settings,
     )

@@ -151,16 +151,16 @@ class RobotGeometry:
 
 
 def pieces_at(curve: SplineCurve, aims: Sequence[float]) -> Array:
-    """For each aim, [rad]: its place in its piece, how many pieces it is beyond an end, and the
+    """For each aim, [rad]: where in its piece it is, how many pieces it is beyond an end, and the
     piece's control points, flat."""
     found = list[Any]()
     for aim in aims:
         theta = aim if isfinite(aim) else 0.0
         inner = theta - PERIOD * floor(theta / PERIOD + 0.5) if curve.closed else theta
         whole = (inner + pi) * curve.pieces / PERIOD
-        place = min(max(whole, 0.0), float(curve.pieces))
-        piece = min(int(place), curve.pieces - 1)
-        found += [[place - piece, whole - place], curve.points[piece : piece + WINDOW].ravel()]
+        within = min(max(whole, 0.0), float(curve.pieces))
+        piece = min(int(within), curve.pieces - 1)
+        found += [[within - piece, whole - within], curve.points[piece : piece + WINDOW].ravel()]
     return np.concatenate(found)
 
 
@@ -184,8 +184,8 @@ def _seen(robot: Robot, laws: tuple[str, ...]) -> np.ndarray:
     indices = list[int]()
     for i, law in enumerate(laws):
         for field in ("y", "force", law_named(law).aim):
-            place = layout.slices[field]
-            indices.extend(range(i * layout.size + place.start, i * layout.size + place.stop))
+            span = layout.slices[field]
+            indices.extend(range(i * layout.size + span.start, i * layout.size + span.stop))
     return np.array(indices)
 
 

@@ -962,7 +962,7 @@ export interface ClassMessage {
     is: "class"
     /** "none": there is nothing to join, or the page is a teacher's; "elsewhere": the server has classes at other addresses;
      * "guest": the page's address is that of a class, which the lab has not joined; "member": it has. */
-    place: "elsewhere" | "guest" | "member" | "none"
+    membership: "elsewhere" | "guest" | "member" | "none"
     /** the class's, as on the projector; empty if the address has none. */
     code: string
     /** the nickname of a member. */

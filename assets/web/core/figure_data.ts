@@ -53,7 +53,7 @@ export interface PathData extends Texts<"label" | "kind"> {
     /** What a row of the checks is about, and how many rows there are. */
     checks: string[]
     samples: number
-    /** The place of the largest turning in the settings of a drawing. */
+    /** The index of the largest turning in the settings of a drawing. */
     turning: number | null
     states: number[][]
     settings: number[]
@@ -66,9 +66,9 @@ export type Setting = number | string | boolean
 export interface ChangesData {
     values: Record<string, Setting>
     /** Of those that are one number of the settings. */
-    places: Record<string, number>
-    /** Rows of numbers at some places, for the values of some parameters. */
-    tables: { names: string[]; values: Setting[][]; places: number[]; numbers: number[][] }[]
+    indices: Record<string, number>
+    /** Rows of numbers at some indices, for the values of some parameters. */
+    tables: { names: string[]; values: Setting[][]; indices: number[]; numbers: number[][] }[]
 }
 
 /** A picture in the plane of the path: its lower left corner, and the ways to its right and to its top. */
@@ -88,7 +88,7 @@ export interface DrawingsData {
 }
 
 /** Which variant of the loops runs: the classes of the values that decide it, joined by commas, are a key. A number is of class
- * 0 or 1, "off" or "on", one of some options that of its place among them. */
+ * 0 or 1, "off" or "on", one of some options its index among them. */
 export interface LoopsData {
     classes: Record<string, Setting[]>
     keys: Record<string, number>

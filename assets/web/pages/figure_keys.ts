@@ -2,20 +2,31 @@
 
 import { isTyped, keyOf } from "../core/dom"
 import type { Point } from "../core/figure_data"
-import type { Figure } from "./figure"
+import type { Transport } from "../parts/transport"
+import type { LocalEngine } from "../simulation/local"
+import type { Simulation } from "../simulation/simulation"
 
 const PULL = 0.03 // [m], length of a pull by keys
 const FURTHER = 0.005 // [m] by which a key pulls further in a lesson, as in the lab
 const PULLS: Record<string, Point> = { a: [-1, 0], d: [1, 0], w: [0, 1], s: [0, -1] }
 const DIRECTIONS: Record<string, Point> = { ArrowRight: [1, 0], ArrowLeft: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }
 
+/** What keys act on. */
+interface Page {
+    readonly simulation: Simulation
+    readonly engine: LocalEngine
+    readonly transport: Transport
+    /** Have it drawn again. */
+    changed(): void
+}
+
 /** Hear the keys of a figure's page until `signal` ends it. */
-export function hearKeys(figure: Figure, inLesson: boolean, signal: AbortSignal): void {
+export function hearKeys(figure: Page, inLesson: boolean, signal: AbortSignal): void {
     document.addEventListener("keydown", event => act(figure, event), { signal })
     if (figure.simulation.data.controls.includes("pull")) pulls(figure, inLesson, signal)
 }
 
-function act(page: Figure, event: KeyboardEvent): void {
+function act(page: Page, event: KeyboardEvent): void {
     const target = event.target as HTMLElement
     if (isTyped(event) || target.closest("input, [role=slider], summary")) return
     if (event.key === " " && target.closest("button")) return
@@ -40,7 +51,7 @@ function act(page: Figure, event: KeyboardEvent): void {
 }
 
 /** Keys pull: while one is pressed, or in a lesson a little further each time, until X lets go. */
-function pulls({ simulation }: Figure, inLesson: boolean, signal: AbortSignal): void {
+function pulls({ simulation }: Page, inLesson: boolean, signal: AbortSignal): void {
     let pulling = "" // the key that pulls
     addEventListener("keydown", event => {
         const key = keyOf(event), direction = PULLS[key]

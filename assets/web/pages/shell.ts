@@ -48,7 +48,7 @@ export class Shell {
     private brought = "" // share code of the page's address
     private compare: LawComparison | null = null
     private seat: ClassSheet | null = null
-    private place = "" // the lab's in the class, as it was told last
+    private membership = "" // the lab\'s in the class, as it was told last
     private asked = false // whether the teacher has been asked for a former place
     private readonly chosen = noFile()
     private readonly chosenLog = noLog()
@@ -170,7 +170,7 @@ export class Shell {
         })
     }
 
-    private get isClassroom(): boolean { return (this.engine.seat?.place ?? "none") !== "none" }
+    private get isClassroom(): boolean { return (this.engine.seat?.membership ?? "none") !== "none" }
 
     /** Open the card of the class, or what asks for a teacher's key. */
     private takeSeat(name: "class" | "teach", isGone = false): SheetDialog {
@@ -185,19 +185,19 @@ export class Shell {
 
     /** Show the lab's place in a class. A page at the address of a class begins with its card. */
     private sit(): void {
-        const { engine, header, place, leaves, asked } = this, { seat } = engine
+        const { engine, header, membership, leaves, asked } = this, { seat } = engine
         if (!seat) return
-        this.place = seat.place
+        this.membership = seat.membership
         this.asked = seat.asked
         header.sit(seat)
         this.seat?.show(seat)
         const isDone = !seat.away && (!seat.asks || seat.identification)
-        if ((place && seat.place !== place && isDone) || (asked && !seat.asked)) {
+        if ((membership && seat.membership !== membership && isDone) || (asked && !seat.asked)) {
             this.seat?.close() // what was asked for is done
             if (document.activeElement === document.body) header.seat.focus()
         }
-        if (seat.place !== "guest" || this.seat) return
-        const isGone = place === "member"
+        if (seat.membership !== "guest" || this.seat) return
+        const isGone = membership === "member"
         if (isGone ? leaves : engine.hasGreeted) return
         engine.hasGreeted = true
         this.opened?.dialog.close()

@@ -58,7 +58,7 @@ export class ClassSheet {
         this.acts = this.field = null
         tell(refusal, "")
         sheet.title = phrase(texts, teaches ? "class.teach" : "class.title") + (seat.code && ` ${seat.code}`)
-        sheet.body.replaceChildren(...teaches ? this.key() : seat.place === "member" ? this.member(seat) : this.joining(seat))
+        sheet.body.replaceChildren(...teaches ? this.key() : seat.membership === "member" ? this.member(seat) : this.joining(seat))
         if (hadFocus) sheet.body.querySelector<HTMLElement>("form input")?.focus()
     }
 

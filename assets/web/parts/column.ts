@@ -42,7 +42,7 @@ class RemoteStudent implements Student {
     derives(question: string, row: string): void { this.writes(question, row) } // the server adds it
     way(item: string): "" | "sending" | "sent" {
         if (this.engine.outbox.has(this.page.lesson, item)) return "sending"
-        return this.engine.seat?.place === "member" ? "sent" : ""
+        return this.engine.seat?.membership === "member" ? "sent" : ""
     }
     private post(answer: AnswerCommand, item: string): void {
         this.engine.outbox.post(answer, this.page.lesson, Number.parseInt(item))

@@ -55,15 +55,15 @@ export class Header {
     }
 
     /** Show who one is in the class, or how to join it. */
-    sit({ place, code, name, asks, identification }: ClassMessage): void {
+    sit({ membership, code, name, asks, identification }: ClassMessage): void {
         const { seat, brand, texts } = this
-        seat.hidden = place === "none"
+        seat.hidden = membership === "none"
         brand.hidden = !seat.hidden
         const isAsked = asks !== "" && !identification, room = phrase(texts, isAsked ? "class.sign" : "class.of", { code })
         seat.classList.toggle("asked", isAsked)
-        if (place === "member") seat.replaceChildren(made("b", "", made("bdi", "", name)), made("small", "", room))
+        if (membership === "member") seat.replaceChildren(made("b", "", made("bdi", "", name)), made("small", "", room))
         else seat.replaceChildren(phrase(texts, "class.join"))
-        seat.ariaLabel = seat.title = place === "member" ? `${name} · ${room}` : phrase(texts, "class.join")
+        seat.ariaLabel = seat.title = membership === "member" ? `${name} · ${room}` : phrase(texts, "class.join")
     }
 }
 

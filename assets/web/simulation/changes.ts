@@ -17,10 +17,10 @@ export class Changes {
     /** Places in the settings of the loops, and the numbers that belong there. */
     *numbers(): Iterable<[number, number]> {
         const { values } = this
-        for (const [name, place] of Object.entries(this.data.places)) yield [place, Number(values[name])]
+        for (const [name, index] of Object.entries(this.data.indices)) yield [index, Number(values[name])]
         for (const table of this.data.tables) {
             const row = nearest(table.values, table.names.map(name => values[name]!))
-            for (const [i, place] of table.places.entries()) yield [place, table.numbers[row]![i]!]
+            for (const [i, index] of table.indices.entries()) yield [index, table.numbers[row]![i]!]
         }
     }
 

@@ -3,7 +3,7 @@
 import type { Point } from "../core/figure_data"
 import { mathematics } from "./mathematics"
 
-type Exported = (...places: number[]) => void
+type Exported = (...addresses: number[]) => void
 
 const DOUBLE = 8 // bytes
 const PAGES = 128 // of 64 KiB
@@ -31,30 +31,30 @@ export class Kernels {
 
     /** Allocate a vector of a number of doubles. */
     room(count: number): number {
-        const place = this.end
+        const address = this.end
         this.end += count
         if (this.end > this.numbers.length) throw new Error("the page's memory is full")
-        return place
+        return address
     }
 
     /** Allocate a vector with its values. */
     put(values: ArrayLike<number>): number {
-        const place = this.room(values.length)
-        this.numbers.set(values, place)
-        return place
+        const address = this.room(values.length)
+        this.numbers.set(values, address)
+        return address
     }
 
-    readonly pair = (place: number): Point => [this.numbers[place]!, this.numbers[place + 1]!]
+    readonly pair = (address: number): Point => [this.numbers[address]!, this.numbers[address + 1]!]
     readonly copy = (from: number, to: number, count: number) => this.numbers.copyWithin(to, from, from + count)
 
     /** Call a function on vectors. */
-    call(name: string, ...places: number[]): void {
-        this.function(name)(...places.map(place => DOUBLE * place))
+    call(name: string, ...addresses: number[]): void {
+        this.function(name)(...addresses.map(address => DOUBLE * address))
     }
 
     /** Call a loop or a scan: see `wasm_of` in models/closed_loop/wasm_loop.py. */
     loop(name: string, vectors: [number, number, number, number], ticks: number): void {
-        this.function(name)(...vectors.map(place => DOUBLE * place), ticks)
+        this.function(name)(...vectors.map(address => DOUBLE * address), ticks)
     }
 
     private function(name: string): Exported {

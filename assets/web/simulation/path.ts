@@ -283,8 +283,8 @@ export class Path {
         const { kernels: { numbers }, kept, tried, state, values, edit: { grain }, data: { handles } } = this
         const by = [0, 1].map(k => numbers[tried[0] + 2 * index + k]! - numbers[kept[0] + 2 * index + k]!)
         handles[index]!.weights.forEach((weight, j) => by.forEach((each, k) => {
-            const place = 2 * j + k
-            numbers[tried[1] + place] = grain * Math.round((numbers[kept[1] + place]! + weight * each) / grain) + 0 // no -0
+            const at = 2 * j + k
+            numbers[tried[1] + at] = grain * Math.round((numbers[kept[1] + at]! + weight * each) / grain) + 0 // no -0
         }))
         handles.forEach(({ theta }, i) => {
             numbers.set([0, theta, 0, theta], state)
@@ -385,8 +385,8 @@ export class Path {
         return this.kernels.pair(work + p)
     }
 
-    private readonly call = (name: string, ...places: number[]) =>
-        this.kernels.call(`${name}.${this.data.kind}`, ...places)
+    private readonly call = (name: string, ...addresses: number[]) =>
+        this.kernels.call(`${name}.${this.data.kind}`, ...addresses)
     /** A scan along a curve, of which it takes what a step needs. */
     private readonly scan = (name: string, state: number, table: number, results: number, count: number) =>
         this.kernels.loop(`${name}.${this.data.kind}`, [state, this.pieces, table, results], count)

@@ -43,7 +43,7 @@ export class Side {
     private readonly straight = this.kernels.room(this.sizes.n + this.sizes.p) // a configuration, and its tip
     private readonly moved = this.kernels.room(2 * this.sizes.n) // a configuration, and its velocity
     private readonly y = this.kernels.room(this.sizes.p)
-    private drawing: number | null = null // places of the points of a drawing
+    private drawing: number | null = null // address of the points of a drawing
     private readonly grabbed = this.kernels.room(this.sizes.p) // where the tip was when a pull began
     private row = this.log // the last one
     private readonly past = this.kernels.room(this.sizes.log)
@@ -82,15 +82,15 @@ export class Side {
         this.kernels.copy(this.state + this.figure.state.theta_ref[0], this.field("theta_ref"), 1)
     }
 
-    /** Take a variant of the loop, and numbers at places in the settings. */
+    /** Take a variant of the loop, and numbers at indices of the settings. */
     configure(variant: number, numbers: readonly (readonly [number, number])[]): void {
         Object.assign(this, { variant, numbers })
-        for (const [place, value] of numbers) this.set(place, value)
+        for (const [index, value] of numbers) this.set(index, value)
     }
 
-    /** The number at a place in the settings. */
-    readonly setting = (place: number): number => this.kernels.numbers[this.settings + place]!
-    private readonly set = (place: number, value: number) => (this.kernels.numbers[this.settings + place] = value)
+    /** A number of the settings. */
+    readonly setting = (index: number): number => this.kernels.numbers[this.settings + index]!
+    private readonly set = (index: number, value: number) => (this.kernels.numbers[this.settings + index] = value)
     /** Advance by some ticks; a robot that stops stays as it was one tick before, as in the lab. */
     advance(ticks: number): void {
         if (this.stopped) return
@@ -146,28 +146,28 @@ export class Side {
 
     /** Hold it back along the path where it is, or let it go; `logged`: where it was in the last row of the log. */
     hold(on: boolean, logged = false): void {
-        const { settings: places, state } = this.figure
+        const { settings: spans, state } = this.figure
         if (on) {
-            const tangent = this.settings + places.hold_tangent[0], theta = logged ? this.field("theta") : this.state + state.theta[0]
+            const tangent = this.settings + spans.hold_tangent[0], theta = logged ? this.field("theta") : this.state + state.theta[0]
             if (logged) this.kernels.copy(this.field("y"), this.y, this.sizes.p)
             else this.call("tip", this.state + state.q[0], this.y)
-            this.kernels.copy(this.y, this.settings + places.hold_anchor[0], this.sizes.p)
+            this.kernels.copy(this.y, this.settings + spans.hold_anchor[0], this.sizes.p)
             this.call("brake", this.path.valuesAt(this.kernels.numbers[theta]!), tangent)
             this.most = this.path.draws(this.kernels.numbers[theta]!) ? this.distance : 0
         }
         this.held = on
-        this.set(places.hold_active[0], on ? 1 : 0)
+        this.set(spans.hold_active[0], on ? 1 : 0)
     }
 
     /** Pull the tip by a vector in the picture from where it was when the pull began; null: let go. */
     pull(by: Point | null): void {
-        const { settings: places } = this.figure
+        const { settings: spans } = this.figure
         if (by && !this.pulled) this.kernels.copy(this.field("y"), this.grabbed, this.sizes.p)
         this.pulledBy = by
-        this.set(places.hand_active[0], by ? 1 : 0)
+        this.set(spans.hand_active[0], by ? 1 : 0)
         if (!by) return
         this.kernels.numbers.set([0, 0, ...by], this.result)
-        this.call("hand", this.grabbed, this.result, this.result + 2, this.settings + places.hand_target[0])
+        this.call("hand", this.grabbed, this.result, this.result + 2, this.settings + spans.hand_target[0])
     }
 
     /** Let a pull begin where the tip is now; returns by how much. */
@@ -222,7 +222,7 @@ export class Side {
     /** What the page's parts know of the present instant. */
     sample(): SideSample {
         const { sizes, kernels, distance, held, pulled } = this
-        const vector = (place: number): Vector => [...kernels.numbers.subarray(place, place + sizes.p)]
+        const vector = (address: number): Vector => [...kernels.numbers.subarray(address, address + sizes.p)]
         const tip = vector(this.field("y")), force = vector(this.field("force")), closest = vector(this.nearest + 1)
         let reference: Vector | null = null, straight: Vector | null = null
         if (this.does().aim === "theta_ref") {
@@ -275,15 +275,15 @@ export class Side {
         return this.point("place", this.y)
     }
 
-    private point(name: string, ...places: number[]): Point {
-        this.call(name, ...places, this.result)
+    private point(name: string, ...addresses: number[]): Point {
+        this.call(name, ...addresses, this.result)
         return this.kernels.pair(this.result)
     }
 
     private readonly seen = (name: keyof FigureData["log"]): number =>
         (this.isPast ? this.past : this.row) + this.figure.log[name][0]
     private readonly field = (name: keyof FigureData["log"]): number => this.row + this.figure.log[name][0]
-    private readonly call = (name: string, ...places: number[]) => this.kernels.call(this.name(name), ...places)
+    private readonly call = (name: string, ...addresses: number[]) => this.kernels.call(this.name(name), ...addresses)
     private get loop(): string { return this.name(`loop${this.law}${this.variant ? `v${this.variant}` : ""}`) }
     private readonly name = (name: string): string => `${name}.${this.path.data.kind}`
 }

@@ -26,7 +26,7 @@ from onpath.app.common.end_signals import END_SIGNALS
 from onpath.app.common.own_laws import compiled_law
 from onpath.app.plant import controller_process
 from onpath.app.plant.controller_process import ControllerPlan, ControllerProcess
-from onpath.app.plant.datagrams import Measured, measurement, torque_in
+from onpath.app.plant.datagrams import Measured
 from onpath.app.plant.plant_link import PlantReport
 from onpath.assets import asset_path
 from onpath.models.controller.functions import REFUSALS
@@ -34,6 +34,7 @@ from onpath.models.studies.record_file import log_columns, read_records
 from onpath.models.systems.catalogue import ROBOTS
 from tests.support.checkout import ROOT
 from tests.support.lab_process import free_ports
+from tests.support.plant_end import measurement, torque_in
 from tests.support.still_arm import StillArm
 from tests.support.waiting import wait_for
 

@@ -175,13 +175,13 @@ def test_a_step_has_the_drawings_that_it_shows_and_switches_for_all() -> None:
     course = built_in_course()[0]
     lessons = [course.lesson(name, "en") for name in course.lessons]
     steps = [(lesson, index) for lesson in lessons for index in range(len(lesson.steps))]
-    scenes = [(*step, step[0].scene_at(step[1])) for step in steps]
-    drawing = [each for each in scenes if each[2].show or "show" in each[2].controls]
-    for lesson, index, scene in drawn(drawing, 8):
+    setups = [(*step, step[0].setup_at(step[1])) for step in steps]
+    drawing = [each for each in setups if each[2].show or "show" in each[2].controls]
+    for lesson, index, setup in drawn(drawing, 8):
         data = figure_of(step_figure(lesson, index), ENGLISH)["drawings"]
         switches = [each["name"] for each in data["switches"]]
-        assert data["shown"] == [*scene.show] and {*scene.show} <= {*switches}
-        assert ("show" in scene.controls) == (switches == [*SWITCHES])
+        assert data["shown"] == [*setup.show] and {*setup.show} <= {*switches}
+        assert ("show" in setup.controls) == (switches == [*SWITCHES])
 
 
 def test_what_a_symbol_means_is_shapes_to_scale() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from onpath.app.exports.standalone.setting_places import Unsupported
+from onpath.app.exports.standalone.setting_numbers import Unsupported
 from onpath.app.lab.dry_runs.course_check import lab_at, solved
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.lessons.course import BUILT_IN, REFERENCE, read_references

@@ -75,17 +75,17 @@ def has_one_option(lesson: Lesson, name: str) -> bool:
 
 def lacks_of(lesson: Lesson, step: Step, site: SiteStep) -> list[str]:
     """What a step has in the lab and not on the site."""
-    scene = lesson.scene_at(site.number - 1)
+    setup = lesson.setup_at(site.number - 1)
     here = {*fields_of(site), *site.figure["controls"], *site.figure["drawings"]["shown"]}
-    here |= {name for name in scene.controls if has_one_option(lesson, name)}
+    here |= {name for name in setup.controls if has_one_option(lesson, name)}
     tools = {"editor": "drag", "show": "labels"}
     lacks = list[str]()
     if step.kind not in ("predict", "quiz"):
-        wanted = [each for name in scene.controls for each in STANDS_FOR.get(name, (name,))]
+        wanted = [each for name in setup.controls for each in STANDS_FOR.get(name, (name,))]
         lacks += [name for name in wanted if tools.get(name, name) not in here]
-    lacks += [name for name in scene.show if name not in here]
-    lacks += [f"plot {name}" for name in scene.plots if name not in site.data["plots"]]
-    if len(site.figure["drawings"]["marks"]) != len(scene.marks):
+    lacks += [name for name in setup.show if name not in here]
+    lacks += [f"plot {name}" for name in setup.plots if name not in site.data["plots"]]
+    if len(site.figure["drawings"]["marks"]) != len(setup.marks):
         lacks.append("marks")
     if step.script is not None and site.data["script"] is None:
         lacks.append("script")
@@ -100,7 +100,7 @@ def lacks_of(lesson: Lesson, step: Step, site: SiteStep) -> list[str]:
 
 def named_in(lesson: Lesson, step: Step, words: Words, site: SiteStep) -> Iterator[str]:
     """Names of controls that a step's text sets in bold, outside of what is folded."""
-    robot = lesson.scene_at(site.number - 1).robot or lesson.front.robot
+    robot = lesson.setup_at(site.number - 1).robot or lesson.front.robot
     known = {parameter_label(n, s, words): n for n, s in specs(ROBOTS[robot].parameters).items()}
     known |= {parameter_label(n, each.spec, words): n for n, each in SETTINGS.items()}
     known |= {words(key): name for name, key in BUTTONS.items()}

@@ -51,13 +51,13 @@ def wanted(name: str, index: int) -> tuple[Setup, dict[str, np.ndarray]]:
     do(lab, TakeStep(name, index))
     assert lab.lessons.index == index
     parameters, path = ROBOTS[lesson.front.robot].parameters(), "circle"
-    for scene in (step.scene for step in lesson.steps[: index + 1] if step.scene):
-        if not scene.keep:
-            robot = scene.robot or lesson.front.robot
+    for setup in (step.setup for step in lesson.steps[: index + 1] if step.setup):
+        if not setup.keep:
+            robot = setup.robot or lesson.front.robot
             parameters, path = ROBOTS[robot].parameters(), "circle"
-        for parameter, value in scene.set.items():
+        for parameter, value in setup.set.items():
             parameters = changed(parameters, parameter, value)
-        path = scene.path or path
+        path = setup.path or path
     assert lab.simulation.parameters == parameters
     assert lab.simulation.editor.design is lab.simulation.presets[path]
     return setting(lab), {n: run.state.copy() for n, run in lab.simulation.runs.items()}
@@ -88,7 +88,7 @@ def arrived(lab: Lab) -> Lab:
     run_, lesson = lab.lessons, lab.lessons.lesson
     assert lesson is not None and lab.script is None
     assert_at_the_beginning(lab)
-    assert lab.simulation.running == (lesson.scene_at(run_.index).running and not run_.waits)
+    assert lab.simulation.running == (lesson.setup_at(run_.index).running and not run_.waits)
     return lab
 
 

@@ -15,7 +15,7 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.lesson_record import Beginning, record_of
 from onpath.app.notebook.simulate import ellipse, simulate
 from onpath.lessons.action_schema import StepSetup
-from onpath.lessons.vocabulary.setups import scene_faults
+from onpath.lessons.vocabulary.setups import setup_faults
 from onpath.models.closed_loop.trajectory import header, write_csv
 from onpath.models.studies.experiments import experiments
 from onpath.models.studies.experiments import run as run_experiment
@@ -86,8 +86,8 @@ def test_experiments_refuse_it_in_words() -> None:
 
 def test_a_lesson_that_wants_it_elsewhere_is_faulty() -> None:
     for path, faulty in (("clover", True), ("ellipse", False)):
-        scene = StepSetup(path=path, set={"across": "level_set"})
-        assert any(NONE in fault for fault in scene_faults(scene, "five_bar")) == faulty
+        setup = StepSetup(path=path, set={"across": "level_set"})
+        assert any(NONE in fault for fault in setup_faults(setup, "five_bar")) == faulty
 
 
 def test_a_figure_tells_its_unit() -> None:

@@ -99,7 +99,7 @@ from onpath.app.cli.main import run_command
 from onpath.app.lab import commands as c
 from onpath.app.lab.setups.capture import capture
 from onpath.app.lab.setups.share_code import encode
-from onpath.app.lab.setups.step_setup import setup_of_scene
+from onpath.app.lab.setups.step_setup import setup_from
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.server.new_lab import new_lab as newcomers_lab
 from onpath.app.view.forms import setting_field
@@ -107,7 +107,7 @@ from onpath.app.view.lab_form import form_of, refusals_in, values_in
 from onpath.lessons.action_schema import StepSetup
 from onpath.lessons.course import NO_LESSONS
 from onpath.lessons.vocabulary.lists import names_markdown
-from onpath.lessons.vocabulary.setups import scene_faults
+from onpath.lessons.vocabulary.setups import setup_faults
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.lab_settings import lab_specs
 from onpath.models.systems.catalogue import FIVE_BAR
@@ -157,13 +157,13 @@ do(other, c.UseShared(encode(capture(lab.simulation))))
 assert shown(other) == NEW
 
 # In a lesson: as a control, in its set-up, which the next step takes back.
-scene = StepSetup(set=NEW, controls=tuple(NEW))
-assert list(scene_faults(scene, "five_bar")) == []
-assert list(scene_faults(StepSetup(set={"trails": 99.0}), "five_bar"))
+setup = StepSetup(set=NEW, controls=tuple(NEW))
+assert list(setup_faults(setup, "five_bar")) == []
+assert list(setup_faults(StepSetup(set={"trails": 99.0}), "five_bar"))
 lab = new_lab()
-lab.set_up(setup_of_scene(scene, "five_bar"))
+lab.set_up(setup_from(setup, "five_bar"))
 assert shown(lab) == NEW
-lab.set_up(setup_of_scene(StepSetup(), "five_bar"))
+lab.set_up(setup_from(StepSetup(), "five_bar"))
 assert shown(lab) == {"trails": 1.5, "wind": 0.0}
 
 # In `simulate`, as far as it belongs to a robot.

@@ -13,7 +13,7 @@ from onpath.app.lab.commands.settings import SetByProcess
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.setups.capture import capture
 from onpath.app.lab.setups.share_code import decode, encode
-from onpath.app.lab.setups.step_setup import setup_of_scene
+from onpath.app.lab.setups.step_setup import setup_from
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.storage.lab_state import _now, _state, put_back
 from onpath.lessons.action_schema import StepSetup
@@ -129,13 +129,13 @@ def test_a_lesson_s_step_restores_what_a_set_up_has(name: str) -> None:
         value = 0.01
     do(lab, c.Set("wall", True), c.Set(name, value))
     assert shown(lab)[name] == value
-    lab.set_up(setup_of_scene(StepSetup(), "five_bar"))
+    lab.set_up(setup_from(StepSetup(), "five_bar"))
     restored = setting.kept == "code"
     assert shown(lab)[name] == (setting.default if restored else value)
     if restored:
         assert name in step_specs(ROBOTS["five_bar"].parameters)
-        scene = StepSetup(set={"wall": True, name: value} if "wall_" in name else {name: value})
-        lab.set_up(setup_of_scene(scene, "five_bar"))
+        setup = StepSetup(set={"wall": True, name: value} if "wall_" in name else {name: value})
+        lab.set_up(setup_from(setup, "five_bar"))
         assert shown(lab)[name] == pytest.approx(value)
 
 

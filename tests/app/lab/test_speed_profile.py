@@ -14,7 +14,7 @@ from onpath.app.lab.setups.restore import restore
 from onpath.app.lab.setups.share_code import decode, encode
 from onpath.app.lab.setups.stored import from_data, to_data
 from onpath.lessons.action_schema import StepSetup
-from onpath.lessons.vocabulary.setups import scene_faults
+from onpath.lessons.vocabulary.setups import setup_faults
 from onpath.models.closed_loop.profile_shapes import profile_of
 from onpath.models.studies.experiments import experiments
 from onpath.models.studies.experiments import run as run_experiment
@@ -123,9 +123,9 @@ def test_set_ups_and_share_codes_carry_it(shape: str) -> None:
 
 def test_a_lesson_may_set_it_and_nothing_else_by_that_name() -> None:
     good = StepSetup(set={"speed_profile": "sine", "profile_period": 3.0})
-    assert list(scene_faults(good, "five_bar")) == []
+    assert list(setup_faults(good, "five_bar")) == []
     bad = StepSetup(set={"speed_profile": "zigzag"})
-    assert list(scene_faults(bad, "five_bar"))
+    assert list(setup_faults(bad, "five_bar"))
 
 
 @pytest.mark.parametrize(

@@ -30,7 +30,7 @@ from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_sn
 from onpath.app.storage.lab_state import keep, put_back
 from onpath.lessons.action_schema import Laws, StepSetup
 from onpath.lessons.sides import law_label, law_text, robot_names, side_titles
-from onpath.lessons.vocabulary.setups import scene_faults
+from onpath.lessons.vocabulary.setups import setup_faults
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.lab_settings import settings_of_start
 from onpath.models.closed_loop.start import Start
@@ -260,13 +260,13 @@ def test_torques_for_an_output_that_takes_none() -> None:
 
 
 def test_lessons_take_it() -> None:
-    scene = StepSetup(laws=Laws(left="across = -K1*xi - K2*dxi\nalong = 1"))
-    assert list(scene_faults(scene, "five_bar")) == []
+    setup = StepSetup(laws=Laws(left="across = -K1*xi - K2*dxi\nalong = 1"))
+    assert list(setup_faults(setup, "five_bar")) == []
     wrong = StepSetup(laws=Laws(left="across = -K1*xii; along = 1"))
-    (fault,) = scene_faults(wrong, "five_bar")
+    (fault,) = setup_faults(wrong, "five_bar")
     assert "did you mean xi" in fault
     lab = Lab(LOOP_CACHE)
-    do(lab, ScriptLaws(scene.laws))
+    do(lab, ScriptLaws(setup.laws))
     assert lab.simulation.laws[LEFT] == "across = -K1*xi - K2*dxi; along = 1"
     run(lab, 0.1)
     assert_sound(lab)

@@ -20,7 +20,7 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.plant_state import SIDE, settable
 from onpath.app.plant.controller_process import Address, ControllerPlan, ControllerProcess
-from onpath.app.plant.datagrams import Measured, measurement, torque_in
+from onpath.app.plant.datagrams import Measured
 from onpath.app.plant.lab_plant import LOST, SILENT, LabPlant, PlantChoice
 from onpath.app.plant.plant_link import PlantLink, PlantReport
 from onpath.app.server.plant_desk import PlantDesk
@@ -34,6 +34,7 @@ from onpath.models.paths.curves import circle
 from onpath.models.systems.catalogue import ROBOTS
 from tests.bench.hostile_messages import wild_message
 from tests.support.lab import FRAME, do, loop_cache
+from tests.support.plant_end import measurement, torque_in
 
 CHOICE = PlantChoice(
     address=("127.0.0.1", 9000), laws=("path_following", "waiting_clock"), fastest=50.0

@@ -12,10 +12,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import onpath
-from onpath.app.plant.datagrams import Measured, measurement, torque_datagram, torque_in
+from onpath.app.plant.datagrams import Measured, torque_datagram
 from onpath.app.plant.plant_link import PlantLink
 from onpath.models.controller.functions import AT_FAULT, REFUSALS
 from tests.support.lab_log import lab_log
+from tests.support.plant_end import measurement, torque_in
 
 ARM: dict[str, Any] = {"robot": "two_link_arm", "path": "circle", "torque_limit": 5.0}
 CODE = {name: number for number, name in enumerate(REFUSALS, 1)}

@@ -186,11 +186,11 @@ class World:
             page.lab.drain()
             told, name = self.shown(page), self.members.get(page.code)
             if page.code in self.teachers:
-                assert told == ClassMessage(place="none")
+                assert told == ClassMessage(membership="none")
             elif name is None:
-                assert (told.place, told.name) == ("guest", "")
+                assert (told.membership, told.name) == ("guest", "")
             else:
-                assert told.place == "member" and told.name.casefold() not in names
+                assert told.membership == "member" and told.name.casefold() not in names
                 assert told.name.startswith(name[: LONGEST_NAME - 3])
                 assert told.name == name or told.name[-1].isdigit()
                 names.add(told.name.casefold())

@@ -53,7 +53,7 @@ def test_a_plot_and_a_control_that_a_text_names_are_on_its_page() -> None:
             first = take_page_snapshot(lab_at(lesson, step, loop_cache()), 1.0)
             for words in map(Words, COURSE.languages()):
                 for said in marks:
-                    on_page = is_shown(said, lesson.scene_at(index), first, words)
+                    on_page = is_shown(said, lesson.setup_at(index), first, words)
                     assert on_page != said.absent, (lesson.name, said.text, words.language)
                     seen += 1
     assert seen > 10
@@ -64,7 +64,7 @@ def test_every_control_that_a_step_names_is_on_its_page() -> None:
     for versions in COURSE.lessons.values():
         lesson = versions["en"]
         for index, step in enumerate(lesson.steps):
-            named = {*lesson.scene_at(index).controls} - ELSEWHERE
+            named = {*lesson.setup_at(index).controls} - ELSEWHERE
             first = take_page_snapshot(lab_at(lesson, step, loop_cache()), 1.0) if named else None
             for name in named:
                 assert first is not None
@@ -81,4 +81,4 @@ def test_every_step_has_a_form_whatever_robot_is_chosen(robot: str) -> None:
     for versions in COURSE.lessons.values():
         lesson = versions["en"]
         for index in range(len(lesson.steps)):
-            form_of(first, lesson.scene_at(index), ENGLISH)
+            form_of(first, lesson.setup_at(index), ENGLISH)

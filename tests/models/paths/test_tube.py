@@ -11,7 +11,7 @@ from onpath.models.paths.curves import Curve, circle, ellipse, nearest, segment
 from onpath.models.paths.path_checks import TUBE
 from onpath.models.paths.path_design import presets
 from onpath.models.paths.space_curves import saddle
-from onpath.models.paths.tube import curve_frames, local_widths, offset, tube_width
+from onpath.models.paths.tube import curve_frames, offset, tube_width
 from tests.support.drawings import star
 
 CURVES = {name: design.curve for name, design in presets().items()}
@@ -33,9 +33,6 @@ def nearest_in(curve: Curve, points: Array) -> tuple[Array, Array]:
 def test_of_a_circle_it_is_the_radius_and_of_a_line_nothing_bounds_it() -> None:
     assert tube_width(circle(0.05)) == pytest.approx(0.05, rel=1e-12)
     assert tube_width(segment((0.0, 0.0), (0.1, 0.05))) == np.inf
-    around = curve_frames(circle(0.05), np.linspace(-3, 3, 7))
-    left, right = local_widths(circle(0.05), around)
-    assert np.allclose(left, 0.05) and np.isinf(right).all()
 
 
 def test_of_an_ellipse_it_is_the_radius_at_its_sharper_ends() -> None:
@@ -54,22 +51,6 @@ def test_within_it_the_closest_point_is_where_one_came_from(curve: Curve) -> Non
         theta, distance = nearest_in(curve, offset(frames, xi))
         assert np.allclose(distance, share * width, atol=1e-9)
         assert np.abs((theta - inner + np.pi) % (2 * np.pi) - np.pi).max() < 1e-3
-
-
-@pytest.mark.parametrize("curve", PROPER.values(), ids=PROPER)
-def test_along_a_normal_the_closest_point_stays_up_to_the_local_width_and_no_further(
-    curve: Curve,
-) -> None:
-    inner = np.linspace(-0.9, 0.9, 37) * np.pi
-    frames = curve_frames(curve, inner)
-    left, right = local_widths(curve, frames)
-    for sign, widths in ((1, left), (-1, right)):
-        bounded = widths < 0.2
-        for share, stays in ((0.97, True), (1.03, False)):
-            far = np.where(bounded, share * widths, 0.01)
-            _, distance = nearest_in(curve, offset(frames, sign * far[:, None]))
-            assert ((np.abs(distance - far) < 1e-7) == (stays | ~bounded)).all()
-    assert min(left.min(), right.min()) >= tube_width(curve) * (1 - 1e-3)
 
 
 def test_a_path_that_crosses_itself_has_none() -> None:

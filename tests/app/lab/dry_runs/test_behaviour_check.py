@@ -166,8 +166,8 @@ def change_what_is_said(patch: Patch) -> None:
 
 
 def hide_the_map(patch: Patch) -> None:
-    scene_at = Lesson.scene_at
-    patch.setattr(Lesson, "scene_at", lambda self, at: replace(scene_at(self, at), show=()))
+    setup_at = Lesson.setup_at
+    patch.setattr(Lesson, "setup_at", lambda self, at: replace(setup_at(self, at), show=()))
 
 
 def stop_nobody(patch: Patch) -> None:

@@ -87,11 +87,16 @@ def test_a_lab_goes_on_until_its_robot_is_identified(lab: Lab, slow: SlowThread)
     assert slow.begun == 1
 
 
-def test_what_was_learned_of_another_robot_is_not_used(lab: Lab, slow: SlowThread) -> None:
+def test_what_was_learned_of_another_robot_is_not_used(
+    lab: Lab, loop_cache: LoopCache, slow: SlowThread
+) -> None:
     do(lab, c.Identify(), c.ChooseRobot("two_link_arm"), c.ChooseRobot("flexible"))
     before = lab.simulation.parameters
     slow.may_end.set()
-    wait_for(lambda: not lab.identification.is_under_way, LONGEST)
+    next_one = Lab(loop_cache)
+    next_one.identification = Identification()
+    do(next_one, c.Identify())
+    wait_for(lambda: has_learned(next_one), LONGEST)  # and so it is the other's turn no more
     lab.drain()
     assert lab.simulation.parameters == before and not lab.message
 

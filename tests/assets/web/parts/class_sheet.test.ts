@@ -5,9 +5,9 @@ import type { ClassMessage, PageMessage } from "../../../../assets/web/channel/m
 import { ClassSheet } from "../../../../assets/web/parts/class_sheet"
 
 const NONE = { code: "", name: "", longest: 0, stored: "", privacy: "", away: "", asked: false, asks: "", identification: "", linked: "" } as const
-const GUEST: ClassMessage = { ...NONE, is: "class", place: "guest", code: "ABC234", longest: 5, stored: "all of it", privacy: "https://x.example/p" }
-const MEMBER: ClassMessage = { ...GUEST, place: "member", name: "<img src=x>" }
-const ELSEWHERE: ClassMessage = { ...NONE, is: "class", place: "elsewhere" }
+const GUEST: ClassMessage = { ...NONE, is: "class", membership: "guest", code: "ABC234", longest: 5, stored: "all of it", privacy: "https://x.example/p" }
+const MEMBER: ClassMessage = { ...GUEST, membership: "member", name: "<img src=x>" }
+const ELSEWHERE: ClassMessage = { ...NONE, is: "class", membership: "elsewhere" }
 
 function opened(seat: ClassMessage, teaches = false, isGone = false) {
     for (const each of document.querySelectorAll("dialog")) each.remove()

@@ -8,13 +8,13 @@ import numpy as np
 
 from onpath.app.scene.projection import seen_at_first
 from onpath.app.scene.stage_catalogue import stage_of
-from onpath.app.server.first_view import FirstView
+from onpath.app.server.first_projection import FirstProjection
 from onpath.models.systems.catalogue import ROBOTS
 
 
 def test_a_view_is_found_in_another_thread_and_only_the_last_one_counts() -> None:
     waiting = list[Callable[[], None]]()
-    view = FirstView(waiting.append)
+    view = FirstProjection(waiting.append)
     robots = [kind.make(kind.parameters()) for kind in ROBOTS.values()]
     assert view.of(robots[0]) is None and view.of(robots[0]) is None
     assert len(waiting) == 1

@@ -10,7 +10,7 @@ from onpath.app.view.state_message import Projection
 from onpath.models.systems.robots import Robot
 
 
-class FirstView:
+class FirstProjection:
     """How the robots of a page are seen before a camera has reported.
 
     A robot's stage is made in another thread: reading the meshes of an arm takes up to half a
@@ -26,7 +26,7 @@ class FirstView:
         self._seen: Projection | None = None
 
     def of(self, robot: Robot) -> Projection | None:
-        """The view of a robot; until it is there, that of the robot before, or None."""
+        """That of a robot; until it is there, that of the robot before, or None."""
         if robot is not self._robot:
             self._robot = robot
             self._submit(lambda: self._see(robot))

@@ -37,45 +37,45 @@ class SettingTable:
     Attributes:
         names: of the parameters.
         values: their values in each row.
-        places: of the numbers in the settings.
-        numbers: for each row, a number for each place.
+        indices: of the numbers in the settings.
+        numbers: for each row, one for each index.
     """
 
     names: tuple[str, ...]
     values: tuple[tuple[Any, ...], ...]
-    places: tuple[int, ...]
+    indices: tuple[int, ...]
     numbers: tuple[tuple[float, ...], ...]
 
 
 @dataclass(frozen=True, slots=True)
-class SettingPlaces:
+class SettingNumbers:
     """Where the parameters act that change on a page.
 
     Attributes:
-        places: name -> place of its value in the settings, of those that are one number.
+        indices: name -> index of its value in the settings, of those that are one number.
         tables: of the others.
     """
 
-    places: Mapping[str, int]
+    indices: Mapping[str, int]
     tables: tuple[SettingTable, ...]
 
     @property
     def names(self) -> set[str]:
         """Of all these parameters."""
-        return {*self.places, *(name for table in self.tables for name in table.names)}
+        return {*self.indices, *(name for table in self.tables for name in table.names)}
 
 
-def setting_places(figure: FigureChoice, used: Used) -> SettingPlaces:
+def setting_numbers(figure: FigureChoice, used: Used) -> SettingNumbers:
     """Where the changing parameters act; those whose numbers would be too many are left out.
 
     Parameters whose numbers depend on each other have a table of the values that actions give them.
     """
     every = dict.fromkeys((*figure.sliders, *figure.changing))
     names = [name for name in every if name not in figure.remade]
-    places, tables, rest = dict[str, int](), list[SettingTable](), list[str]()
+    indices, tables, rest = dict[str, int](), list[SettingTable](), list[str]()
     for name in names:
-        if (place := _single(figure, name)) is not None:
-            places[name] = place
+        if (index := _single(figure, name)) is not None:
+            indices[name] = index
         elif (table := _steady(figure, (name,), [page_values(figure, name, used)])) is not None:
             tables.append(table)
         else:
@@ -83,7 +83,7 @@ def setting_places(figure: FigureChoice, used: Used) -> SettingPlaces:
     own = [[value_of(figure.parameters, name), *used.get(name, ())] for name in rest]
     if rest and (table := _steady(figure, rest, own)) is not None:
         tables.append(table)
-    return SettingPlaces(places, tuple(tables))
+    return SettingNumbers(indices, tuple(tables))
 
 
 def page_values(figure: FigureChoice, name: str, used: Used) -> tuple[Any, ...]:
@@ -97,7 +97,7 @@ def page_values(figure: FigureChoice, name: str, used: Used) -> tuple[Any, ...]:
 
 
 def _single(figure: FigureChoice, name: str) -> int | None:
-    """The place of a number that is one of the settings; None if it is more or something else."""
+    """The index of a number that is one of the settings; None if it is more or something else."""
     spec, own = specs(figure.parameters)[name], figure.parameters
     kernel = figure.kernel(figure.laws[0], next(iter(figure.paths.values())))
     where = kernel.settings.slices.get(name)
@@ -126,12 +126,12 @@ def _steady(
         after = [with_values(base, dict(zip(names, row, strict=True))) for row in rows]
         for law, curve in _loops(figure):
             vectors = np.array([_settings(figure, law, curve, each) for each in after])
-            places = np.flatnonzero((vectors != vectors[0]).any(axis=0))
+            indices = np.flatnonzero((vectors != vectors[0]).any(axis=0))
             table = SettingTable(
                 names=tuple(names),
                 values=tuple(rows),
-                places=tuple(places.tolist()),
-                numbers=tuple(tuple(row) for row in vectors[:, places].tolist()),
+                indices=tuple(indices.tolist()),
+                numbers=tuple(tuple(row) for row in vectors[:, indices].tolist()),
             )
             if found not in (None, table):
                 return None
