@@ -166,7 +166,7 @@ class PageData:
             messages.append(_text_of(path_message, robot, path))
         if (frame := self._source.take(lab)) is not None:
             messages.append(_text_of(frame_message, frame))
-        if self._language:
+        if self._has_words:
             messages += [*self._of_lesson(), *self._of_answers(lab)]
         if self._symbol:
             messages += self._light(robot, drawn)
@@ -243,10 +243,15 @@ class PageData:
         return [partial(encoded, each) for each in news]
 
     @property
+    def _has_words(self) -> bool:
+        """Whether the page has the words of the language in which it is told everything else."""
+        return self._language == self._text.words.language
+
+    @property
     def _has_step(self) -> bool:
         """Whether the page waits for the message of a step that is made."""
         column = self._text.column
-        if column is None or not column.message or not self._language:
+        if column is None or not column.message or not self._has_words:
             return False
         return column.message is not self._lesson
 

@@ -39,6 +39,7 @@ LATER = (
     "scipy.signal",
 )
 REST = 3.0  # [s] left to the first browser to open its lab
+PATIENCE = 3.0  # [s] for which each part waits while frames are late
 TRIES = 5
 SHARE = 0.8  # share of the time left to others
 
@@ -48,7 +49,7 @@ def warm_up(loop_cache: LoopCache, course: Course, rest: float = REST) -> Thread
 
     A part that fails, for instance because too many files are open, is tried again after a rest.
     Each part waits while frames are late, and afterwards rests, so that others get `SHARE` of the
-    time; without `rest`, it does neither.
+    time; if `rest` is 0, it does neither.
     """
 
     def make_loops() -> None:
@@ -70,7 +71,7 @@ def warm_up(loop_cache: LoopCache, course: Course, rest: float = REST) -> Thread
         while parts and tries:
             time.sleep(rest)
             tries -= 1
-            parts = [part for part in parts if not _succeeds(part, rest)]
+            parts = [part for part in parts if not _succeeds(part, gently=rest > 0)]
         gc.freeze()  # else each full collection scans all of this again and stops every thread
 
     thread = Thread(target=work, name="warm-up", daemon=True)
@@ -101,8 +102,10 @@ def compile_loops(loop_cache: LoopCache, entry: RobotEntry) -> None:
         loop_cache.make(robot, kind)
 
 
-def _succeeds(part: Callable[[], object], patience: float) -> bool:
-    wait_until_on_time(patience)
+def _succeeds(part: Callable[[], object], *, gently: bool) -> bool:
+    """Do a part, so gently that others get their time, or at once; returns whether it is done."""
+    if gently:
+        wait_until_on_time(PATIENCE)
     begun = time.monotonic()
     try:
         part()
@@ -110,7 +113,7 @@ def _succeeds(part: Callable[[], object], patience: float) -> bool:
         log_warning("not prepared yet: %r", error)
         return False
     finally:
-        if patience:
+        if gently:
             time.sleep(SHARE / (1 - SHARE) * (time.monotonic() - begun))
     return True
 
