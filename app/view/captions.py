@@ -57,7 +57,12 @@ class Captions:
             kind = "at_end"
         if self.brief:
             kind = kind.removesuffix(BOUNDED)
-        return self._words(f"caption.{kind}", mm=f"{1e3 * distance:.0f}") if kind else ""
+        return self._words(f"caption.{kind}", mm=self._millimetres(distance)) if kind else ""
+
+    def _millimetres(self, distance: float) -> str:
+        """A distance [m] in whole millimetres, or tenths where it has not one."""
+        mm = 1e3 * distance
+        return self._words.written(f"{mm:.{1 if mm < 1 else 0}f}")
 
     def _largest_held(self, side: str, robot: RobotSnapshot) -> float:
         """Largest distance since a robot has been held back, [m].

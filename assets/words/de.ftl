@@ -1898,6 +1898,7 @@ standalone-still_robot =
     bis zu { $far } mm von der Bahn
 standalone-refused = Diese Abbildung läuft hier nicht: Sie braucht WebAssembly. Wenn der Browser es hat, verbietet es der Server: Seine Content-Security-Policy muss dann 'wasm-unsafe-eval' in script-src erlauben. ({ $reason })
 standalone-description = Eine Simulation, die in dieser Seite läuft: { $laws }
+standalone-about = { $product }, MIT-Lizenz. Die Theorie: Hladio, Nielsen, Wang: „Path following for mechanical systems: experiments and examples“.
 
 # Das Schaubild der Abstände, die Lupe und die Knöpfe für die Zeit
 

@@ -1481,6 +1481,7 @@ standalone-still_robot =
     up to { $far } mm from the path
 standalone-refused = This figure does not run here: it needs WebAssembly. If your browser has it, the server forbids it: its Content-Security-Policy then has to allow 'wasm-unsafe-eval' in script-src. ({ $reason })
 standalone-description = A simulation that runs in this page: { $laws }
+standalone-about = { $product }, MIT licence. The theory: Hladio, Nielsen, Wang: “Path following for mechanical systems: experiments and examples”.
 
 # The chart of distances, the lens and the buttons for time
 

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from hashlib import sha256
 from typing import Any
 
+from onpath.app.common.product import product_version
 from onpath.app.common.templates import inlined, json_block, render
 from onpath.app.exports.standalone.figure_choice import FigureChoice
 from onpath.app.exports.standalone.figure_data import figure_data
@@ -86,6 +87,7 @@ def _page(
         picture=b64encode(picture).decode(),
         described=words("standalone.still", laws=names),
         text=text,
+        about=words("standalone.about", product=f"OnPath {product_version()}".rstrip()),
         data=data,
         script=script,
     )

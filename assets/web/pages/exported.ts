@@ -4,6 +4,7 @@ import type { FigureData } from "../core/figure_data"
 import { refused } from "../core/refusal"
 import { Kernels } from "../simulation/kernels"
 import { Simulation } from "../simulation/simulation"
+import { keepInAddress } from "./address"
 import { Figure } from "./figure"
 
 async function showFigure(data: FigureData, place: HTMLElement): Promise<void> {
@@ -12,8 +13,11 @@ async function showFigure(data: FigureData, place: HTMLElement): Promise<void> {
     try {
         const simulation = new Simulation(data, await Kernels.from(data.module))
         // For an enclosing page, and for tests: advance(ticks), simulation.hold(true) and so on.
-        Object.assign(window, { onpath: new Figure(simulation, place) })
-        if (parent !== window) tellHeight()
+        const figure = new Figure(simulation, place)
+        place.append(...still) // for paper
+        Object.assign(window, { onpath: figure })
+        if (parent === window) keepInAddress(figure)
+        else tellHeight()
     } catch (error) {
         place.replaceChildren(refused(data, error), ...still)
     }

@@ -12,6 +12,7 @@ import { Strip } from "../parts/strip"
 import { Transport } from "../parts/transport"
 import { View } from "../parts/view"
 import { hearKeys } from "./figure_keys"
+import { OwnHold } from "./own_hold"
 import { LocalSettings } from "./settings"
 
 const SILENCE = 3000 // [ms], least time between two announcements of the same kind
@@ -20,6 +21,7 @@ const TRACE = 4 // [s] of the past that the tips' traces show
 
 export class Figure {
     readonly engine = new LocalEngine(this.simulation, !this.inLesson)
+    readonly settings = new LocalSettings(this.simulation, () => this.changed())
     private readonly data = this.simulation.data
     private readonly views = this.simulation.sides.map(side => new View(side, this.simulation.sides[0]!, this.data, () => (this.stale = true)))
     private readonly lenses = this.views.map((_, i) => new Lens(this.data, this.engine, i, this.ended))
@@ -33,7 +35,8 @@ export class Figure {
     private readonly brakes = made("div", "transport brakes", this.transport.brake)
     private readonly bar = made("div", "bar", this.transport.element, this.late)
     /** The settings that one may change; a page may put it elsewhere. */
-    readonly form = new Form(this.data.form, new LocalSettings(this.simulation, () => this.changed()), this.ended)
+    readonly form = new Form(this.data.form, this.settings, this.ended)
+    private readonly own: OwnHold | null
     private pending: (() => void) | null = null // a drag to be handled before the next picture
     private stale = true
     private kind = ""
@@ -53,6 +56,7 @@ export class Figure {
         hearKeys(this, inLesson, ended)
         this.engine.on(() => (this.stale = true), ended)
         this.changed()
+        this.own = !inLesson && this.data.controls.includes("hold") ? new OwnHold(this.engine, ended) : null
         requestAnimationFrame(() => this.frame())
     }
 
@@ -119,7 +123,10 @@ export class Figure {
         if (this.ended.aborted) return
         this.drag()
         const now = performance.now()
-        if (this.engine.pass(now)) this.stale = true
+        if (this.engine.pass(now)) {
+            this.stale = true
+            this.own?.follow()
+        }
         if (this.stale) this.draw()
         this.strip.draw(now)
         for (const [i, lens] of this.lenses.entries()) {
@@ -144,7 +151,7 @@ export class Figure {
         const note = notes(simulation)
         tell(this.note, note)
         tell(this.late, late)
-        this.say(captions, `${note} ${late}`.trim())
+        if (!this.own?.plays) this.say(captions, `${note} ${late}`.trim())
     }
 
     /** Announce what robots do when it changes, and from time to time their millimetres. */

@@ -19,8 +19,8 @@ function kind(side: Side, off: boolean, data: FigureData): string {
 /** A robot's caption; empty if it simply does what its law's title says. */
 export function caption(side: Side, data: FigureData): string {
     const distance = side.held ? side.most : side.distance
-    const which = kind(side, distance >= data.off, data)
-    return which && phrase(data, `caption.${which}`, { mm: written(data, 1e3 * distance, 0) })
+    const which = kind(side, distance >= data.off, data), mm = 1e3 * distance
+    return which && phrase(data, `caption.${which}`, { mm: written(data, mm, mm < 1 ? 1 : 0) })
 }
 
 /** One line with the captions of all robots that have one. */
