@@ -166,7 +166,8 @@ class Classroom:
         code: the class code, the same in every process with this key; it is in the class's address.
         state: everything that is stored; replaced at each change.
         claims: labs of students who say that a place is theirs whose lab is away -> that lab.
-        ordered: called when labs are to follow an order at once.
+        ordered: called when labs are to follow an order at once; others they follow a quarter of
+            a second later, see `class_sync.SYNC_INTERVAL`. A vote is late by its own time.
     """
 
     clock: Callable[[], float] = time.monotonic

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from onpath.models.arrays import Array
 from onpath.models.control.settable import values_of
 from onpath.models.control.sides import LEFT
 from onpath.models.layout import Layout
+from onpath.models.paths.curves import Curve
 from onpath.models.systems.law_parameters import LEVEL_SET
 
 MOST_SAMPLES = 3600
@@ -78,9 +80,14 @@ def record_of(
         robot=simulation.entry.name,
         laws=simulation.laws,
         changed=lambda: _changed(simulation, since.given),
-        length=lambda: 1e3 * simulation.editor.design.curve.length(),
+        length=lambda: 1e3 * _length(simulation.editor.design.curve),
         before={} if before is None else before,
     )
+
+
+@lru_cache(maxsize=256)  # a task asks for it several times a second, in each lab of a class
+def _length(curve: Curve) -> float:
+    return curve.length()
 
 
 class Trace:
