@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 NEGLIGIBLE = 1e-6
 """Changes of lengths, rotations and forces below this are not drawn [m, N]."""
 FORCE = ArrowShape(shaft_radius=0.0032, head_radius=0.0085, head_length=0.018, shortest=0.004)
-TRACE_SEGMENTS = 120
+TRACE_SEGMENTS = 48
 TRACE_DEPTHS = (0.012, 0.002)
 """Depth of the trace behind the path, and of older laps behind newer ones [m]."""
 

@@ -45,7 +45,7 @@ from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
 
 TRACE = 1.6  # [s] of the past that a trace shows
-TRACE_POINTS = 120
+TRACE_POINTS = 48  # 30 a second: as many as pictures
 CURVE_POINTS = 160  # of a series
 OF_PIECE = 2  # of a piece of a drawing
 DASH = 0.002  # [m], of a raised link, and from one dash to the next
