@@ -16,6 +16,7 @@ from tests.support.browser import Tab, wait_for
 pytestmark = pytest.mark.thorough
 
 TYPED = "across = -K1*xi - K2*dxi; along = -K5*(dtheta - speed/2)"
+STROKES = "lines => lines.map(line => getComputedStyle(line).stroke)"
 TABLE = "table:has-text('largest force')"
 
 
@@ -31,8 +32,10 @@ def test_laws_are_compared_while_the_lab_goes_on(browser: Browser, server: LabSe
     told = {cells[0]: float(cells[1]) for cells in map(str.split, _lines(tab))}
     assert told["Trajectory"] > 40
     assert told["Path"] < 6 and told["Waiting"] < 6
-    figure = tab.page.get_by_role("figure").filter(has_text="Distance to the path over time")
+    figure = tab.page.get_by_role("figure").filter(has_text="Distance from the path over time")
     expect(figure).to_be_visible()
+    strokes = figure.locator("polyline").evaluate_all(STROKES)
+    assert len({*strokes}) == 3 and "none" not in strokes
 
     tab.page.keyboard.press("Escape")
     tab.ask(c.TypeLaw(RIGHT, TYPED))

@@ -38,4 +38,7 @@ def _tones(tones: Tones) -> dict[str, str]:
         shown[f"side{number}"] = colour.toward(palette.WHITE, 0.25 if is_dark else 0)
         toward, share = (palette.WHITE, 0.45) if is_dark else (palette.INK, 0.35)
         shown[f"dark{number}"] = colour.toward(toward, share)
+    for number, colour in enumerate(palette.OTHERS):
+        lighter = colour.toward(palette.WHITE, 0.25 if is_dark else 0)
+        shown[f"other{number}"] = tones.line if colour is palette.INK else lighter
     return {name: colour.hex for name, colour in shown.items()}
