@@ -367,8 +367,8 @@ def _fields(lab: _Lab, marks: Mapping[str, FieldValue], words: Words) -> dict[st
             help=words("design.draw_hint"),
             act={"is": "freehand"},
         ),
-        _button("undo", words("design.undo"), Undo(), needs="can_undo"),
-        _button("redo", words("design.redo"), Redo(), needs="can_redo"),
+        _button("undo", words("design.undo"), Undo(), words("design.undo_hint"), needs="can_undo"),
+        _button("redo", words("design.redo"), Redo(), words("design.redo_hint"), needs="can_redo"),
         FormField(name="pace", kind="note", label=""),
         *_law_fields(robot, chosen, words),
     ]
@@ -405,12 +405,16 @@ def _fields(lab: _Lab, marks: Mapping[str, FieldValue], words: Words) -> dict[st
     found += [
         _switch("show_start", words("start.show"), words("start.show_hint")),
         _button("pulse", words("gains.pulse"), Pulse(), words("gains.pulse_hint")),
-        _button("reset", words("start.reset"), Reset()),
-        _button("start_on_path", words("start.default"), StartOnPath()),
+        _button("reset", words("start.reset"), Reset(), words("start.reset_hint")),
+        _button(
+            "start_on_path", words("start.default"), StartOnPath(), words("start.default_hint")
+        ),
         FormField(name="wall_forces", kind="note", label="", needs=((FormNeed("wall"),),)),
         FormField(name="poles", kind="note", label=""),
         FormField(name="pole_plane", kind="poles", label=words("form.poles")),
-        _button("defaults", words("gains.defaults"), ResetParameters()),
+        _button(
+            "defaults", words("gains.defaults"), ResetParameters(), words("gains.defaults_hint")
+        ),
         _button("file", words("setup.file"), help=words("setup.file_hint")),
         *_point_fields(robot, lab.points, words),
         _button("identify", words("gains.identify"), Identify(), words("gains.identify_hint")),
@@ -420,7 +424,13 @@ def _fields(lab: _Lab, marks: Mapping[str, FieldValue], words: Words) -> dict[st
             if robot.frame.p == 2
             else ()
         ),
-        FormField(name="view", kind="button", label=words("run.view"), act={"is": "view"}),
+        FormField(
+            name="view",
+            kind="button",
+            label=words("run.view"),
+            help=words("run.view_hint"),
+            act={"is": "view"},
+        ),
     ]
     return {field.name: field for field in found}
 
@@ -447,8 +457,8 @@ def _point_fields(robot: Robot, count: int, words: Words) -> Iterator[FormField]
     """What adds, removes and moves control points of the path."""
     section = words("form.section_points")
     for button in (
-        _button("add", words("design.add"), AddPoint()),
-        _button("remove", words("design.remove"), RemovePoint()),
+        _button("add", words("design.add"), AddPoint(), words("design.add_hint")),
+        _button("remove", words("design.remove"), RemovePoint(), words("design.remove_hint")),
     ):
         yield structs.replace(button, section=section)
     numbers = [FormOption(value=i + 1, label=str(i + 1)) for i in range(count)]
@@ -465,6 +475,7 @@ def _point_fields(robot: Robot, count: int, words: Words) -> Iterator[FormField]
             name=name,
             kind="number",
             label=words("design.coordinate", name=f"y{axis}"),
+            help=words("design.coordinate_hint"),
             low=-REACH,
             high=REACH,
             step=5e-4,

@@ -719,6 +719,7 @@ run-run_hint = Hält die simulierte Zeit an oder lässt sie weiterlaufen. Taste:
 run-step = Schritt
 run-reset = Zurücksetzen
 run-view = Ansicht zurück
+run-view_hint = Zeigt die Roboter wieder von vorn
 run-rate = Zeit läuft mit
 
 controls-help = Hilfe und Tasten
@@ -732,7 +733,9 @@ start-title = Start
 start-show = Zeigen, um ihn zu ziehen
 start-show_hint = Eine grüne Kugel in der Szene: Dort beginnt der nächste Lauf; ihr Pfeil ist die Geschwindigkeit. Solange sie zu sehen ist, lassen sich auch die Glieder eines Roboters aus einer Datei ziehen: Jedes dreht dort sein Gelenk
 start-reset = Dort beginnen
+start-reset_hint = Beginnt von neuem, an diesem Start
 start-default = Auf der Bahn
+start-default_hint = Setzt den Start wieder auf die Bahn, in Ruhe
 
 ## Die Bahn
 
@@ -784,12 +787,17 @@ design-rounder = Ecken auf { $radius } mm runden
 design-followed = Die Roboter folgen { $file }; „Rückgängig“ nimmt das zurück. Änderungen der Werte hier unten wirken sofort darauf.
 design-reading = Die Datei wird gelesen.
 design-undo = Rückgängig
+design-undo_hint = Nimmt die letzte Änderung der Bahn zurück
 design-redo = Wiederholen
+design-redo_hint = Macht die zurückgenommene Änderung wieder
 design-add = Einfügen
+design-add_hint = Ein neuer Punkt der Bahn, hinter dem ausgewählten
 design-remove = Entfernen
+design-remove_hint = Nimmt den ausgewählten Punkt aus der Bahn
 design-selected = Ausgewählt
 design-no_point = keiner
 design-coordinate = { $name } [mm]
+design-coordinate_hint = Wo der ausgewählte Punkt in der Ebene der Bahn liegt
 design-arrows = Pfeiltasten schieben den ausgewählten Punkt um 1 mm; N wählt den nächsten. Um einen Punkt zu ziehen, den die Spitze verdeckt, wähle ihn zuerst aus.
 design-slanted_circle = Ellipse von (23)
 design-rank = Rangtest (11) längs der Bahn: mindestens { $number } von 1.
@@ -799,6 +807,7 @@ design-zone_hint = Wo der Arm gestreckt oder gefaltet ist, Gl. (14)
 ## Verstärkungen und Realismus
 
 gains-defaults = Auf Anfangswerte
+gains-defaults_hint = Gibt dem Roboter und seinen Regelungen die üblichen Werte
 gains-across = Quer
 gains-along = Längs
 gains-pulse = Prüfstoß

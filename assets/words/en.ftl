@@ -634,6 +634,7 @@ run-run_hint = Stops or resumes simulated time. Key: space
 run-step = Step
 run-reset = Reset
 run-view = Reset view
+run-view_hint = Shows the robots from the front again
 run-rate = Time runs at
 
 controls-help = Help and keys
@@ -647,7 +648,9 @@ start-title = Start
 start-show = Show it, to drag it
 start-show_hint = A green ball in the scene: where the next run starts; its arrow is the velocity. While it is shown, the links of a robot from a file can be dragged, too: each turns its joint there
 start-reset = Reset to it
+start-reset_hint = Begins anew, from this start
 start-default = On the path
+start-default_hint = Puts the start back onto the path, at rest
 
 ## The path
 
@@ -699,12 +702,17 @@ design-rounder = Round the corners to { $radius } mm
 design-followed = The robots follow { $file }; Undo takes it back. What you change below acts on it at once.
 design-reading = The file is being read.
 design-undo = Undo
+design-undo_hint = Takes back the last change of the path
 design-redo = Redo
+design-redo_hint = Makes the change again that was taken back
 design-add = Add
+design-add_hint = A new point of the path, after the selected one
 design-remove = Remove
+design-remove_hint = Takes the selected point out of the path
 design-selected = Selected
 design-no_point = none
 design-coordinate = { $name } [mm]
+design-coordinate_hint = Where the selected point is, in the plane of the path
 design-arrows = The arrow keys move the selected point by 1 mm; N selects the next one. To drag a point that the end-point covers, select it first.
 design-slanted_circle = ellipse of (23)
 design-rank = Rank test (11) along the path: at least { $number } of 1.
@@ -714,6 +722,7 @@ design-zone_hint = Where the arm is stretched or folded, eq. (14)
 ## Gains and realism; the names of the parameters themselves stand in models/
 
 gains-defaults = Reset to defaults
+gains-defaults_hint = Gives the robot and its laws their usual values
 gains-across = Across
 gains-along = Along
 gains-pulse = Test pulse

@@ -67,6 +67,7 @@ def test_a_lab_has_all_that_can_act_once_and_in_words(robot: str) -> None:
         told = {field.name for field in found if field.kind != "button"}
         assert told - drawn <= {*values, *SETTINGS, *OF_PAGE}
         assert all(field.label for field in found if field.kind != "note")
+        assert all(field.help for field in found if field.kind not in ("note", "poles"))
         assert all(field.limit in values for field in found if field.limit)
         declared = {*known, *SETTINGS} - {*OWN_GAINS, *ELSEWHERE, "larger", "K4"}
         assert declared <= {*names}, declared - {*names}
