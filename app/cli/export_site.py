@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -24,6 +25,8 @@ class ExportSite:
 
     def run(self) -> None:
         """Write the site, and print its size."""
+        from rich.console import Console
+
         from onpath.app.exports.site.write_site import write_site
         from onpath.assets.messages import languages
         from onpath.lessons.course import BUILT_IN, read_course
@@ -36,7 +39,9 @@ class ExportSite:
         course, problems = read_course([home])
         if problems:
             raise ValueError(str(problems[0]))
-        write_site(self.target, course, home, self.language or known)
+        console = Console(stderr=True, quiet=not sys.stderr.isatty())
+        with console.status("reading lessons") as shown:
+            write_site(self.target, course, home, self.language or known, shown.update)
         files = [file for file in self.target.rglob("*") if file.is_file()]
         size = sum(file.stat().st_size for file in files)
         print(f"{self.target}: {len(files)} files, {size / 1e6:.1f} MB, needs no server")

@@ -7,7 +7,7 @@ import json
 import shutil
 import tempfile
 from base64 import b64decode
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -40,19 +40,26 @@ SHARED = "site"
 PATHS = ("circle", "ellipse", "rounded square", "clover")
 
 
-def write_site(folder: Path, course: Course, home: Path, languages: Iterable[str]) -> None:
+def write_site(
+    folder: Path,
+    course: Course,
+    home: Path,
+    languages: Iterable[str],
+    begins: Callable[[str], object] = lambda _: None,
+) -> None:
     """Write all pages; the folder is new or empty.
 
     Args:
         home: contains the lessons' own folders.
         languages: language codes; the pages of the first one have plain names.
+        begins: is told what is done next, which takes seconds.
 
     Raises:
         ValueError: the folder holds something else, or a lesson cannot be shown.
     """
     with _whole_folder(folder) as scratch:
         _write_shared(scratch)
-        truths = _truths(course, course.played)
+        truths = _truths(course, course.played, begins)
         writer = _SiteWriter(
             folder=scratch,
             course=course,
@@ -60,7 +67,7 @@ def write_site(folder: Path, course: Course, home: Path, languages: Iterable[str
             languages=list(languages),
             truths=truths,
         )
-        writer.write()
+        writer.write(begins)
 
 
 def write_lesson(
@@ -109,11 +116,12 @@ class _SiteWriter:
         self._folder, self._course, self._home = folder, course, home
         self._languages, self._truths, self._scorm = languages, truths, scorm
 
-    def write(self) -> None:
+    def write(self, begins: Callable[[str], object]) -> None:
         for language in self._languages:
             words = Words(language)
             self._start(words)
             for name in self._course.played:
+                begins(f"writing {self._address(name, language)}")
                 self.lesson(name, words)
 
     def _address(self, name: str, language: str) -> str:
@@ -228,11 +236,14 @@ class _SiteWriter:
         (self._folder / self._address(name, words.language)).write_text(page, "utf-8")
 
 
-def _truths(course: Course, names: Iterable[str]) -> dict[tuple[str, int], Truth]:
+def _truths(
+    course: Course, names: Iterable[str], begins: Callable[[str], object] = lambda _: None
+) -> dict[tuple[str, int], Truth]:
     """The results of all steps with a script, by lesson and index of the step."""
     loop_cache = LoopCache(at_once=True, translate=InterpretedLoop)  # compiling is not worth it
     found = dict[tuple[str, int], Truth]()
     for name in names:
+        begins(f"playing {name}")
         lesson = course.lesson(name, DEFAULT)
         for index in range(len(lesson.steps)):
             truth = run_truth(lesson, index, loop_cache)
