@@ -147,7 +147,10 @@ def test_what_is_wrong_is_named(
 
 
 def test_the_built_in_routes_have_time_for_what_they_name() -> None:
-    """And in self-study not much more. A demonstration is not read aloud, so it may be quicker."""
+    """And in self-study not much more, and no optional page.
+
+    A demonstration is not read aloud, so it may be quicker.
+    """
     course, problems = built_in_course()
     assert problems == [] and len(course.routes) == 3
     for name, route in course.routes.items():
@@ -157,6 +160,7 @@ def test_the_built_in_routes_have_time_for_what_they_name() -> None:
             estimated = sum(step_minutes(step).total for step in steps)
             assert "lecture" in name or stop.minutes >= estimated - 1, (name, stop, estimated)
             assert "self" not in name or stop.minutes <= estimated + 2, (name, stop, estimated)
+            assert "self" not in name or not any(step.optional for step in steps), (name, stop)
     minutes = [route.minutes for route in course.routes.values()]
     assert minutes[0] <= 90 and minutes[1] <= 20
 
