@@ -26,7 +26,6 @@ class FileInbox:
     Args:
         largest: size of a file with a path, [B].
         clock: monotonic time, [s].
-        largest_log: size of a log, [B].
 
     Attributes:
         file: that is under way, or None.
@@ -38,9 +37,8 @@ class FileInbox:
         self,
         largest: int,
         clock: Callable[[], float] = time.monotonic,
-        largest_log: int = MOST_LOG_BYTES,
     ) -> None:
-        self._largest, self._largest_log, self._clock = largest, largest_log, clock
+        self._largest, self._clock = largest, clock
         self._allowance = Allowance(FILES, FILES_PER_SECOND, clock)
         self._content, self._since = bytearray(), 0.0
         self._repeats = Allowance(AGAIN, AGAIN_PER_SECOND, clock)
@@ -69,7 +67,7 @@ class FileInbox:
                 raise CodedError("error.file_often")
             self.kept = (file.number, self.kept[1])
             return self.kept[1]
-        largest = self._largest_log if isinstance(file.use, LogFile) else self._largest
+        largest = MOST_LOG_BYTES if isinstance(file.use, LogFile) else self._largest
         if file.size > largest:
             raise CodedError("error.file_size", most=f"{largest / 1e6:g}")
         self.kept = None

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from onpath.app.exports.figures import ShownFigure, save
 from onpath.lessons.sides import law_titles
-from onpath.lessons.words import ENGLISH, Words
+from onpath.lessons.words import ENGLISH
 from onpath.models.studies.comparison import Outcome
 
 COLOURS = ("#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#888888")
@@ -25,9 +25,7 @@ def draw_comparison(results: Mapping[tuple[str, str], Sequence[Outcome]], path: 
     save(comparison_figure(results), path)
 
 
-def comparison_figure(
-    results: Mapping[tuple[str, str], Sequence[Outcome]], words: Words = ENGLISH
-) -> Figure:
+def comparison_figure(results: Mapping[tuple[str, str], Sequence[Outcome]]) -> Figure:
     """Plot the largest distance over the final delay, for the worst place of each obstruction.
 
     A law that stays on the path has a small distance; one that keeps to its clock has a delay of 0.
@@ -51,26 +49,24 @@ def comparison_figure(
             axes.plot(0.03 * stopped, 0.96, marker, color=colour, **edge)
     if stopped:
         x = 0.03 * stopped + 0.02
-        axes.text(x, 0.96, words("compare.stopped"), transform=axes.transAxes, va="center")
+        axes.text(x, 0.96, ENGLISH("compare.stopped"), transform=axes.transAxes, va="center")
     axes.set_yscale("log")
     axes.grid(alpha=0.25, which="major")
-    axes.set_xlabel(words("compare.delay"))
-    axes.set_ylabel(words("compare.distance"))
-    _explain(figure, axes, laws, obstructions, words)
+    axes.set_xlabel(ENGLISH("compare.delay"))
+    axes.set_ylabel(ENGLISH("compare.distance"))
+    _explain(figure, axes, laws, obstructions)
     return figure
 
 
-def _explain(
-    figure: Figure, axes: Axes, laws: list[str], obstructions: list[str], words: Words
-) -> None:
+def _explain(figure: Figure, axes: Axes, laws: list[str], obstructions: list[str]) -> None:
     """Add legends for the laws' colours and the obstructions' markers."""
     by_law = [
         axes.plot([], [], "o", color=colour, label=title)[0]
-        for title, colour in zip(law_titles(laws, words).values(), cycle(COLOURS), strict=False)
+        for title, colour in zip(law_titles(laws, ENGLISH).values(), cycle(COLOURS), strict=False)
     ]
     by_obstruction = [
         axes.plot(
-            [], [], MARKERS[i % len(MARKERS)], color="0.4", label=words(f"obstruction.{name}")
+            [], [], MARKERS[i % len(MARKERS)], color="0.4", label=ENGLISH(f"obstruction.{name}")
         )[0]
         for i, name in enumerate(obstructions)
     ]

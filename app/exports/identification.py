@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from onpath.app.exports.figures import ShownFigure
-from onpath.lessons.words import ENGLISH, Words
+from onpath.lessons.words import ENGLISH
 from onpath.models.closed_loop.trajectory import header
 from onpath.models.studies.exciting_motion import PlannedMotion
 from onpath.models.studies.link_estimate import LinkEstimate, LinkParameter
@@ -199,7 +199,7 @@ def motion_text(entry: RobotEntry, motion: PlannedMotion) -> str:
     return "\n".join([*lines, ""])
 
 
-def residual_figure(found: FileEstimate, words: Words = ENGLISH) -> ShownFigure:
+def residual_figure(found: FileEstimate) -> ShownFigure:
     """Plot the filtered torque of each coordinate and what the model does not explain of it.
 
     Records follow each other without a gap.
@@ -212,8 +212,8 @@ def residual_figure(found: FileEstimate, words: Words = ENGLISH) -> ShownFigure:
     begin = float(result.times[0])
     times = begin + np.concatenate([[0.0], np.cumsum(np.where(steps > 0, steps, usual))])
     for i, (each, name) in enumerate(zip(axes, found.coordinates, strict=True)):
-        each.plot(times, result.torque[:, i], color="#0072b2", label=words("residuals.torque"))
-        each.plot(times, result.residual[:, i], color="#d55e00", label=words("residuals.left"))
+        each.plot(times, result.torque[:, i], color="#0072b2", label=ENGLISH("residuals.torque"))
+        each.plot(times, result.residual[:, i], color="#d55e00", label=ENGLISH("residuals.left"))
         unit = "N" if name.endswith("_m") else "N m"
         each.set_ylabel(f"{name.rpartition('_')[0]}  [{unit}]")
         each.grid(alpha=0.25)

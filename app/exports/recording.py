@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import math
-import time
-
 import numpy as np
 
 from onpath.app.lab.plot_samples import sample_layout
@@ -23,18 +20,10 @@ from onpath.models.systems.robots import Robot
 RATE = 30.0  # [Hz], frames of a recording
 
 
-def record_scene(
-    robot: Robot, history: list[Segment], words: Words = ENGLISH, until: float = math.inf
-) -> bytes:
+def record_scene(robot: Robot, history: list[Segment], words: Words = ENGLISH) -> bytes:
     """A standalone page that replays the history.
 
     The scene is rebuilt in a `FilmServer`.
-
-    Args:
-        until: deadline by `time.monotonic`, [s].
-
-    Raises:
-        TimeoutError: the deadline has passed.
     """
     frames = _frames(history)
     studio, stage = FilmServer(), stage_of(robot)
@@ -43,8 +32,6 @@ def record_scene(
     scene.build(_snapshot(robot, frames[0], []))
     serializer = studio.get_scene_serializer()
     for number, segment in enumerate(frames):
-        if time.monotonic() > until:
-            raise TimeoutError("the recording takes too long")
         snapshot = _snapshot(robot, segment, frames[max(0, number - 45) : number])
         scene.update(snapshot.motion)
         if number % 3 == 0:

@@ -20,6 +20,7 @@ from onpath.models.systems.zero_dynamics import HIGHEST_ALPHA, flexible_zero_dyn
 
 TABLE_ALPHAS = (-1.0, 0.0, 0.5, 0.7, 0.8, 0.9, 1.0)
 REACH = 0.1  # [m], half-width of the map of critical alpha
+LINES = 13  # of that map, in either direction
 SETTABLE = ("plant", "rho", "frequency", "zeta", "b", "d", "centre")
 """Parameters of the internal dynamics besides alpha and modes, which the table varies."""
 
@@ -106,13 +107,13 @@ def highest(parameters: FlexibleParameters) -> float:
     return HIGHEST_ALPHA / (parameters.rho if parameters.plant == "unit_modes" else 1.0)
 
 
-def critical_map(parameters: FlexibleParameters, count: int = 13) -> tuple[np.ndarray, np.ndarray]:
+def critical_map(parameters: FlexibleParameters) -> tuple[np.ndarray, np.ndarray]:
     """Critical alpha over the path's plane.
 
     Returns:
-        y2 and y3 of the grid lines, (count,), [m]; alpha, (count, count), rows along y3.
+        y2 and y3 of the grid lines, (LINES,), [m]; alpha, (LINES, LINES), rows along y3.
     """
-    lines = np.linspace(-REACH, REACH, count)
+    lines = np.linspace(-REACH, REACH, LINES)
     values = [[critical_alpha(parameters, (y2, y3)) for y2 in lines] for y3 in lines]
     return lines, np.array(values)
 

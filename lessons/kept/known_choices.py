@@ -33,17 +33,14 @@ def _mark(lesson: Lesson, key: str, index: int | None) -> str:
     return keys[index] if index is not None and index < len(keys) else ""
 
 
-def of_today(course: Course, progress: Progress, only: str = "") -> Progress:
+def of_today(course: Course, progress: Progress) -> Progress:
     """The progress with the present indices of the options; the same object if nothing changes.
 
     Choices that can no longer be identified are in `Notes.unknown`.
-
-    Args:
-        only: name of the one lesson that matters; empty for all.
     """
     changed = dict[str, Notes]()
     for name, notes in progress.notes.items():
-        if course.has(name) and name == (only or name):
+        if course.has(name):
             found = known_notes(course.lesson(name, progress.language), notes)
             if found != notes:
                 changed[name] = found

@@ -84,18 +84,6 @@ def beam_modes(count: int, length: float) -> BeamModes:
     )
 
 
-def rigidity(frequency: float, length: float, density: float) -> float:
-    """EI = ρ (2π f_1)² l⁴ / β_1⁴ of a beam with a given first frequency, [N m²].
-
-    Args:
-        frequency: f_1, clamped, [Hz].
-        length: l, [m].
-        density: ρ, [kg/m].
-    """
-    wave = float(beam_modes(1, length).roots[0]) / length
-    return density * (2 * np.pi * frequency) ** 2 / wave**4
-
-
 def _defect(b: Array) -> Array:
     """d = 1 - σ = (e^-b + cos b + sin b) / (cosh b + cos b), about 1e-7 for the sixth mode."""
     return (np.exp(-b) + np.cos(b) + np.sin(b)) / (np.cosh(b) + np.cos(b))

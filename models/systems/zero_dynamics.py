@@ -45,27 +45,18 @@ class ZeroDynamics:
     function: ca.Function
     acceleration: ca.Function
 
-    def exponents(
-        self,
-        q: Array,
-        parameters: Array,
-        y_rate: Array | None = None,
-        y_acceleration: Array | None = None,
-    ) -> Complex:
-        """Eigenvalues of A at an instant of the motion, by decreasing real part.
+    def exponents(self, q: Array, parameters: Array) -> Complex:
+        """Eigenvalues of A at rest, by decreasing real part.
 
         Args:
             q: configurations, shape (k, n) or (n,).
             parameters: of the system, shape (k, size) or (size,).
-            y_rate, y_acceleration: y' and y'' along the path, shape (k, p) or (p,); None: at rest.
 
         Returns:
             Shape (k, 2 (n - m)), [1/s]; infinity where the decoupling matrix is singular.
         """
         still = np.zeros(self.system.p)
-        rate = still if y_rate is None else y_rate
-        acceleration = still if y_acceleration is None else y_acceleration
-        given = (q, rate, acceleration, parameters)
+        given = (q, still, still, parameters)
         rows = np.broadcast_shapes(*[np.atleast_2d(part).shape[:1] for part in given])
         inputs = [np.broadcast_to(part, (*rows, part.shape[-1])).T for part in given]
         size = 2 * (self.system.n - self.system.m)

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.linalg import eigh
 
 from onpath.models.arrays import Array
+from onpath.models.systems.beam import beam_modes
 
 
 @dataclass(frozen=True)
@@ -77,3 +78,15 @@ def beam_of_elements(count: int, length: float, rigidity: float, density: float)
         stiffness[where, where] += rigidity / h**3 * (bending + np.triu(bending, 1).T)
         mass[where, where] += density * h / 420 * (inertia + np.triu(inertia, 1).T)
     return Elements(np.linspace(0, length, count + 1), mass, stiffness)
+
+
+def rigidity(frequency: float, length: float, density: float) -> float:
+    """EI = ρ (2π f_1)² l⁴ / β_1⁴ of a beam with a given first frequency, [N m²].
+
+    Args:
+        frequency: f_1, clamped, [Hz].
+        length: l, [m].
+        density: ρ, [kg/m].
+    """
+    wave = float(beam_modes(1, length).roots[0]) / length
+    return density * (2 * np.pi * frequency) ** 2 / wave**4

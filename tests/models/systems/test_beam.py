@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from onpath.models.arrays import Array
-from onpath.models.systems.beam import MOST_MODES, beam_modes, rigidity
-from tests.support.finite_elements import beam_of_elements
+from onpath.models.systems.beam import MOST_MODES, beam_modes
+from tests.support.finite_elements import beam_of_elements, rigidity
 
 LENGTH = 0.5
 # cos(beta) cosh(beta) = -1 to sixteen digits (Blevins, Formulas for natural frequency, table 8-1)

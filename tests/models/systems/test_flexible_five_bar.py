@@ -11,7 +11,7 @@ import pytest
 from scipy.linalg import eigh
 
 from onpath.models.arrays import Array
-from onpath.models.systems.beam import beam_modes, rigidity
+from onpath.models.systems.beam import beam_modes
 from onpath.models.systems.flexible_five_bar import (
     HOME,
     PLANTS,
@@ -26,7 +26,7 @@ from onpath.models.systems.system import (
     decoupling_matrix,
     lagrange_bias,
 )
-from tests.support.finite_elements import beam_of_elements
+from tests.support.finite_elements import beam_of_elements, rigidity
 
 LINKS = load_links()
 BEAM = beam_modes(3, LINKS.beam)
