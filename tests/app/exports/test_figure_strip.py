@@ -59,6 +59,7 @@ def opened(folder: Path, **more: Any) -> NodePage:
     page = NodePage()
     page.goto(onpath.figure(**more).save(folder / "a.html").as_uri())
     wait_for(lambda: page.evaluate("'onpath' in globalThis"), WAIT)
+    page.evaluate("onpath.own.plays = false")
     return page
 
 
