@@ -5,7 +5,7 @@ from __future__ import annotations
 from onpath.lessons.words import Words
 
 _PLAIN = (
-    *("lesson.playing", "lesson.replay", "lesson.play", "lesson.read", "lesson.predict_before"),
+    *("lesson.playing", "lesson.replay", "lesson.play", "lesson.skip_run", "lesson.predict_before"),
     *(
         "lesson.right",
         "lesson.not_quite",

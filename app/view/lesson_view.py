@@ -36,17 +36,6 @@ class LessonView(LessonState):
         self.pace, self.votes, self.presenting = shown.pace, shown.votes, shown.presenting
 
     @property
-    def shows_next(self) -> bool:
-        """Whether the open step's prediction is made and the next step runs the experiment."""
-        lesson = self.lesson
-        if lesson is None or self.answer() is None or self.step_is("run") or self.at_end:
-            return False
-        if not self.may_go(1):
-            return False
-        name, index = self.beside(1)
-        return name == lesson.name and lesson.steps[index].kind == "run"
-
-    @property
     def setup(self) -> StepSetup:
         """Set-up of the open step."""
         lesson = self.lesson

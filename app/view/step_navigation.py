@@ -79,13 +79,6 @@ def _forward(run: LessonView) -> list[LessonButton]:
                 words("test.hand_in" if run.is_test else "lesson.finish"), [FINISH], main=True
             )
         ]
-    if run.shows_next:
-        play = LessonButton(words("lesson.play"), [NEXT, {"do": "PlayStep"}], main=True)
-        return [LessonButton(words("lesson.next"), [NEXT]), play]
-    unseen = run.step is not None and run.step.script is not None and not run.has_played()
-    if unseen:
-        name = words("lesson.next_unseen")
-        return [LessonButton(name, [NEXT], short=words("lesson.next"))]
     return [LessonButton(words("lesson.next"), [NEXT], main=True)]
 
 

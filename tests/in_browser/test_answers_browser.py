@@ -55,7 +55,7 @@ def test_answers_are_pressed_by_mouse_finger_and_keys(browser: Browser, server: 
         assert box is not None and box["height"] >= 34.0
     assert tab.simulation.time == 0  # Space on an answer is not the lab's
     commit.click()
-    tab.button("Let it happen").wait_for()
+    tab.button("Next").wait_for()
     answer = tab.lab.lessons.answer()
     assert answer is not None and answer.option is not None
     assert tab.errors == []
@@ -82,6 +82,7 @@ def test_a_committed_choice_is_locked_and_judged_when_its_run_is_over(
     for option in card.get_by_role("radio").all():
         expect(option).to_be_disabled()
     assert page.get_by_label("Why?").is_hidden()
+    tab.press("Next")
     tab.press("Let it happen")
     wait_for(lambda: tab.lab.lessons.playing)
     tab.ask(c.Set("rate", 4.0))

@@ -218,7 +218,7 @@ def _every_step(reader: SiteReader) -> Iterator[SiteReader]:
         yield from _before_and_while_held(reader)
         if reader.page.evaluate("site.page.steps[site.index].kind === 'run'"):
             reader.page.evaluate(
-                "document.querySelector('.step.open :is(.lead, .play button:not(.read))').click()"
+                "document.querySelector('.step.open :is(.lead, .play button)').click()"
             )
             reader.played(10)
             yield reader

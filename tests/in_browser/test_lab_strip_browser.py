@@ -276,7 +276,7 @@ def _board_is_tidy(tab: Tab) -> None:
     page.evaluate(THREE_FRAMES)
     assert page.evaluate(COLLISIONS) == []
     tab.press("Commit to this prediction")
-    expect(tab.button("Let it happen")).to_be_visible()
+    expect(tab.button("Next")).to_be_visible()
     page.evaluate(THREE_FRAMES)
     assert page.evaluate(COLLISIONS) == []
     after = page.locator(".plot:visible").last.bounding_box()

@@ -79,7 +79,7 @@ def test_a_prediction_is_sketched_before_anything_happens(tab: Tab) -> None:
     with tab.dragging(*way, in_scene=False):
         pass
     commit.click()
-    expect(tab.button("Let it happen")).to_be_in_viewport()
+    expect(tab.button("Next")).to_be_in_viewport()
     tab.page.get_by_text("You have committed to your prediction").wait_for()
     assert tab.page.locator(".plot.drawn").count() == 0  # it cannot be drawn again
     answer = wait_for(tab.lab.lessons.answer)

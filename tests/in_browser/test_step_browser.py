@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from itertools import pairwise
 
 import pytest
 
@@ -14,6 +15,7 @@ from playwright.sync_api import Browser, expect
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
 from onpath.app.server.lab_server import LabServer
+from onpath.lessons.schema import Sketch
 from tests.support.browser import WAIT, Tab, wait_for
 from tests.support.built_in import built_in_course
 
@@ -21,6 +23,31 @@ pytestmark = pytest.mark.thorough
 expect.set_options(timeout=WAIT * 1e3)
 
 COURSE, _ = built_in_course()
+SKETCHED = c.Predict(times=(0.0, 1.0), values=(1.0, 2.0))
+
+
+def longest() -> Iterator[tuple[str, int, bool]]:
+    """Steps that ask for a curve, or show a run, with the longest German text of their kind.
+
+    What else is on the page depends on the plots of a run, and on what was predicted.
+    """
+    kinds = dict[tuple[bool, bool, bool], list[tuple[int, str, int]]]()
+    for name, versions in COURSE.lessons.items():
+        steps = versions["de"].steps
+        for index, (before, step) in enumerate(pairwise((steps[0], *steps))):
+            sketch = next((each for each in step.predictions() if isinstance(each, Sketch)), None)
+            if sketch is None and step.script is None:
+                continue
+            text = step.watch if sketch is None else sketch.question
+            after = any(isinstance(each, Sketch) for each in before.predictions())
+            kind = (sketch is not None, after, bool(versions["de"].scene_at(index).plots))
+            kinds.setdefault(kind, []).append((len(step.title) + len(text or ""), name, index))
+    for (drawn, *_), found in kinds.items():
+        _, name, index = max(found)
+        yield name, index, drawn
+
+
+LONGEST = list(longest())
 LESSON, LONG = "01-path-or-timetable", "03-the-five-bar"
 LINE = 24  # [px]; the browser itself may scroll so far, to keep what is read in its place
 SCROLL = """(to) => {
@@ -45,7 +72,20 @@ BELOW = """index => {
     return [task, row].map(each => each ? each.getBoundingClientRect().bottom - bottom : 0)
 }"""
 """How far the text of a step's task, and the first row of its form, are below the fold, [px]."""
+CUT = """([index, part]) => {
+    const step = document.querySelector(`#step-${index + 1}.open`)
+    if (!step || !step.querySelector(".ways .lead")) return null
+    const {bottom} = step.querySelector(".words").getBoundingClientRect()
+    const {height, bottom: own} = step.querySelector(part).getBoundingClientRect()
+    const ways = [...step.querySelectorAll(".pager button")].filter(each => each.checkVisibility())
+    const rows = ways.map(each => each.getBoundingClientRect())
+    return [height ? own - bottom : 1e3, ...rows.map(each => each.bottom - innerHeight),
+        ...rows.map(each => Math.abs(each.top + each.bottom - rows[0].top - rows[0].bottom) - 2)]
+}"""
+"""How far a part of a step's text is below the fold, its buttons are below the window, and how far
+these are from being in one row, [px]."""
 SIZES = ((1280, 800), (390, 844))
+TELEPHONES = ((390, 844), (360, 640))
 ENLARGED = (640, 400)  # the page of a laptop at 200 %
 
 
@@ -162,6 +202,27 @@ def test_a_task_is_seen_at_once_with_what_it_sets(tab: Tab) -> None:
             below = tab.page.wait_for_function(BELOW, arg=index).json_value()
             assert max(below) <= 0, (name, index, below)
             expect(tab.page.locator(".transport .brake > button")).to_be_in_viewport(ratio=0.99)
+    tab.ask(c.SetLanguage("en"))
+    tab.page.wait_for_function("onpathLab.lab.language === 'en'")
+
+
+@pytest.mark.parametrize("tab", SIZES[1:], indirect=True, ids=["telephone"])
+def test_what_is_asked_or_to_be_watched_is_read_whole_on_a_telephone(tab: Tab) -> None:
+    """In German, whose words are longer; with the main button, before anything is pressed."""
+    tab.ask(c.SetLanguage("de"), c.SetRunning(False))
+    tab.page.wait_for_function("onpathLab.lab.language === 'de'")
+    for name, index, drawn in LONGEST:
+        before = COURSE.lesson(name, "de").steps[index - 1].predictions()
+        for prediction in () if drawn else before:
+            given = SKETCHED if isinstance(prediction, Sketch) else c.Predict(option=0)
+            tab.ask(TakeStep(name, index - 1), given)
+        tab.ask(TakeStep(name, index))
+        tab.page.wait_for_function("name => onpathLab.lesson.lesson === name", arg=name)
+        for size in TELEPHONES:
+            give(tab, size)
+            part = ".asked.sketch .question" if drawn else ".op-watch"
+            cut = tab.page.wait_for_function(CUT, arg=[index, part]).json_value()
+            assert max(cut) <= 0, (name, index, size, cut)
     tab.ask(c.SetLanguage("en"))
     tab.page.wait_for_function("onpathLab.lab.language === 'en'")
 

@@ -154,14 +154,6 @@ class Pupil:
         answer = wait_for(run.answer)
         assert answer.sure == "fairly", answer
         assert (answer.reason == 0) == bool(block.reasons) and bool(answer.why) == block.why, answer
-        self._let_happen()
-
-    def _let_happen(self) -> None:
-        """Go on from a prediction to its run, which begins at once."""
-        run = self.tab.lab.lessons
-        here = run.index
-        self.press("Let it happen")
-        wait_for(lambda: run.index == here + 1)
 
     def _see(self) -> None:
         """Watch the experiment of the step to its end."""

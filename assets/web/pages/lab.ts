@@ -166,7 +166,7 @@ class Face {
         this.column.element.remove()
         this.stage.element.remove()
         this.element.remove()
-        document.documentElement.classList.remove("op-large", "op-lesson", "op-waits")
+        document.documentElement.classList.remove("op-large", "op-lesson", "op-waits", "op-plays")
         return open
     }
 

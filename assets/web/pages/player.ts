@@ -267,8 +267,7 @@ export class Player implements Robots {
         next.disabled = index === length
         next.textContent = phrase(page, waits ? "site.skip_short" : index === length - 1 ? "lesson.finish" : "lesson.next")
         next.ariaLabel = waits ? phrase(page, "lesson.skip") : null
-        const seen = !view || page.steps[index]!.kind !== "run" || view.happened
-        next.classList.toggle("main", !waits && seen)
+        next.classList.toggle("main", !waits)
         StepView.lead(view ?? null, pager)
         if (!this.playing) this.run()
         view?.formulas()

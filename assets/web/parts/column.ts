@@ -132,7 +132,7 @@ export class Column implements Robots {
         if (this.lent) return
         this.reveal(message.lesson !== "")
         element.dataset["version"] = String(message.version)
-        document.documentElement.classList.remove("op-waits")
+        document.documentElement.classList.remove("op-waits", "op-plays")
         if (!this.open) return this.leave("")
         const place = `${Object.keys(message.symbols).join()} ${message.lesson}.${message.ended ? END : message.index}`
         const isNew = place !== this.place
@@ -275,6 +275,7 @@ export class Column implements Robots {
         const { view, pager } = this
         StepView.lead(view, pager.querySelector(".ways")!)
         document.documentElement.classList.toggle("op-waits", view?.waits ?? false)
+        document.documentElement.classList.toggle("op-plays", this.playing)
         view?.run()
         view?.formulas()
     }

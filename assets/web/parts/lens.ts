@@ -15,7 +15,7 @@ const HIGHER = 0.92 // of the radius, from the top to the middle of what is to b
 const RIM = 5 // [px] between letters and the edge
 const HALF = 8 // [px], half the height of letters
 const CLOSEST = FACTORS[FACTORS.length - 1]!
-const [SMALL, TINY] = [55, 40] // [px], of a radius with no room for words, and none for a scale
+const [SMALL, TINY] = [55, 40] // [px], of a radius with no room for words, and none for a bar
 const PATIENCE = 900 // [ms] for which it could have gone closer before it does
 const GLIDE = 120 // [ms], time constant of a change of scale
 const TRACE = 2 // [s] of the past that the trace shows
@@ -88,6 +88,7 @@ export class Lens {
             radius + (x - middle[0]) * this.drawn, HIGHER * radius - (y + middle[1]) * this.drawn,
         ])
         if (radius >= TINY) this.bar(ink, radius)
+        else this.times(ink, radius)
         ink.restore()
         ink.lineWidth = 3
         ink.strokeStyle = tones()[`side${engine.texts[side]!.side}`]
@@ -257,6 +258,14 @@ export class Lens {
         this.boxes.push(around(to, 2))
         this.write(ink, text, [[to[0] + 24 * x, to[1] + 12 * y], beside(to, -y, x), beside(to, y, -x), beside(tip, -x, -y)],
             radius, tones().force, true)
+    }
+
+    /** How many times larger than on the stage all is, where there is no room for a bar. */
+    private times(ink: CanvasRenderingContext2D, radius: number): void {
+        ink.font = "11px system-ui, sans-serif"
+        ink.textAlign = "center"
+        ink.textBaseline = "middle"
+        letters(ink, `×${written(this.texts, this.factor)}`, radius, 2 * radius - RIM - HALF, tones().soft, tones().paper)
     }
 
     /** A bar of a round number of millimetres. */

@@ -31,9 +31,9 @@ function cardOf(texts: Texts, lesson: LessonCard, isNext: boolean, act: () => vo
     ring.setAttribute("aria-hidden", "true")
     const name = lesson.number ? `${lesson.number}. ${lesson.title}` : lesson.title
     const state = lesson.finished ? "lesson.done" : lesson.begun ? "lesson.begun" : ""
-    const facts = [...(state ? [phrase(texts, state)] : []), ...lesson.facts].join(" · ")
+    const facts = [...(state ? [phrase(texts, state)] : []), ...lesson.facts].flatMap(each => [" · ", made("span", "", each)]).slice(1)
     const card = pressed(`card${isNext ? " next" : ""}`, "", act)
-    card.append(ring, made("b", "", name), made("span", "summary", lesson.summary), made("span", "facts", facts))
+    card.append(ring, made("b", "", name), made("span", "summary", lesson.summary), made("span", "facts", ...facts))
     if (lesson.picture) card.prepend(Object.assign(made("img", "about"), { src: lesson.picture, alt: "" })) // its title stands beside it
     if (isNext) card.append(made("b", "here", phrase(texts, lesson.begun ? "lesson.go_on_here" : "lesson.begin_here")))
     return card

@@ -42,6 +42,8 @@ export class StepView {
     private shown = "" // what it compares
     private played = false // whether the run was on when it was last looked at
     private readonly button: HTMLButtonElement | null // plays the run
+    private readonly skip = made("button", "without") // the way past it
+    private reads = false // whether the text is read without it
 
     constructor(
         private readonly page: PageData,
@@ -56,6 +58,13 @@ export class StepView {
         section.querySelectorAll<HTMLElement>("[data-second]").forEach(each => this.prepareSecond(each))
         this.button = section.querySelector(".play button")
         this.button?.addEventListener("click", () => robots.play())
+        Object.assign(this.skip, { type: "button", textContent: phrase(page, "lesson.skip_run") })
+        this.skip.addEventListener("click", () => {
+            this.reads = true
+            this.run()
+            student.changed()
+            section.querySelector<HTMLElement>(".words")!.focus({ preventScroll: true })
+        })
     }
 
     /** Make a part answerable. */
@@ -105,21 +114,23 @@ export class StepView {
     get waits(): boolean { return this.prediction !== null && predicted(this.notes, this.prediction.step) === undefined }
     /** Whether its own prediction was committed. */
     get committed(): boolean { return given(predicted(this.notes, this.index)) }
+    /** Whether its run is the next thing to see: it has not been seen, and nobody has chosen to read on without it. */
+    private get isDue(): boolean { return this.page.steps[this.index]!.kind === "run" && !this.happened && !this.reads }
     /** Whether the main thing to press now is the step's own: to commit its prediction, or to let it happen. */
-    get leads(): boolean {
-        const { kind, script } = this.page.steps[this.index]!
-        return (this.form !== null && !this.committed) || (kind === "run" && Boolean(script) && !this.notes.played[String(this.index)])
-    }
-    /** Put the main button of the step, if it has one now, beside those that turn pages, and take away another step's. */
+    get leads(): boolean { return (this.form !== null && !this.committed) || this.isDue }
+    /** Put the main button of the step, if it has one now, where one turns the page, and take away another step's; until its
+     * run is seen or skipped, one does not go on. */
     static lead(view: StepView | null, ways: HTMLElement): void {
-        ways.querySelectorAll(".lead").forEach(each => each.remove())
-        if (!view) return
-        const { form, committed, button, leads, waits } = view
-        const plays = leads && !waits && !form
-        button?.classList.toggle("lead", plays)
-        if (form && !committed) ways.append(form.commit)
-        else if (button && plays) ways.append(button)
-        else if (button) view.places.section.querySelector(".play")!.prepend(button)
+        const plays = view !== null && view.isDue && !view.waits
+        const wanted = plays ? [view.skip, view.button] : view?.form && !view.committed ? [view.form.commit] : []
+        for (const each of ways.querySelectorAll<HTMLButtonElement>(".lead, .without")) if (!wanted.includes(each)) each.remove()
+        for (const each of wanted) if (each && each.parentElement !== ways) ways.append(each)
+        for (const name of ["lead", "main"]) view?.button?.classList.toggle(name, plays)
+        if (view?.button && !plays) view.places.section.querySelector(".play")!.prepend(view.button)
+        const next = ways.querySelector<HTMLButtonElement>("span ~ button:not(.lead, .without)")
+        if (!next) return
+        if (plays && next === document.activeElement) view.button?.focus()
+        next.hidden = plays
     }
 
     /** Whether the step's run has been seen; a run that only the lab can play is seen in its picture. */
@@ -184,27 +195,15 @@ export class StepView {
         if (button) {
             button.disabled = waits || !robots.ready
             button.hidden = robots.playing
-            button.classList.toggle("main", !notes.played[String(index)])
             button.textContent = phrase(page, notes.played[String(index)] ? "lesson.replay" : "lesson.play")
         }
         section.querySelector(".before")?.remove()
         if (waits) (told ?? section.querySelector("h2"))!.after(made("p", "before op-text", phrase(page, "lesson.predict_before")))
         told?.querySelectorAll("span").forEach(each => each.remove())
         if (robots.playing && !section.querySelector(".op-watch")) told?.append(made("span", "", phrase(page, "lesson.playing")))
-        const read = section.dataset["read"] === "yes"
-        const open = !waits && (happened || read)
+        const open = !waits && (happened || this.reads)
         section.classList.toggle("veiled", !open)
         if (step.script) section.querySelector(".still")?.classList.toggle("always", open && !robots.ready)
-        section.querySelector(".read")?.remove()
-        if (!open && !waits && !robots.playing) {
-            const reading = made("button", "read", phrase(page, "lesson.read"))
-            reading.type = "button"
-            reading.addEventListener("click", () => {
-                section.dataset["read"] = "yes"
-                this.run()
-            })
-            told?.append(" ", reading)
-        }
         this.compare()
         if (this.played && happened && !robots.playing)
             robots.tell([phrase(page, "lesson.happened"), ...this.compared?.words ?? []].join(" "))

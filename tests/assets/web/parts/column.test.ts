@@ -119,3 +119,34 @@ test("a step leads while its prediction or its run is to come, and then no longe
     hear({ lesson: "" })
     assert.ok(!column.leads)
 })
+
+test("one button at a time is the main one: to let it happen until the run is seen or skipped, and then to go on", () => {
+    const draw = chance(7)
+    const pager = `<div class="ways"><button>Back</button><span class="gap"></span><button class="main">Next</button></div>`
+    const step = { kind: "run", optional: false, running: true, script: { do: [], seconds: 1 }, figure: -1, values: { lengths: [], paths: [] }, blocks: [] }
+    for (let k = 0; k < 30; k++) {
+        const { hear } = opened()
+        const kind = draw() < 0.7 ? "run" : "explain"
+        const script = kind === "run" ? `<p class="play"><button>Play</button></p>` : ""
+        const steps = [{ ...step, kind, script: script ? step.script : null }] as unknown as LessonMessage["steps"]
+        let [played, skipped] = [false, false]
+        for (let change = 0; change < 8; change++) {
+            const playing = Boolean(script) && draw() < 0.3
+            played ||= Boolean(script) && draw() < 0.15
+            hear({ sections: { "0": `<h2 id="title-1">One</h2>${script}` }, pager, steps, playing, notes: { ...noNotes(), played: { 0: played } } as unknown as LessonMessage["notes"] & object })
+            const seen = [...document.querySelectorAll<HTMLElement>(".step.open button")].filter(each => !each.hidden)
+            const due = Boolean(script) && !played && !skipped
+            const main = seen.filter(each => each.classList.contains("main"))
+            assert.equal(main.length, due && playing ? 0 : 1)
+            if (main[0]) assert.ok(main[0].parentElement?.matches(".ways") && main[0] === [...main[0].parentElement.children].at(-1))
+            assert.equal(seen.some(each => each.textContent === "Next"), !due)
+            const skip = seen.find(each => each.matches(".without"))
+            assert.equal(Boolean(skip), due)
+            assert.equal(document.querySelector(".step.open")!.classList.contains("veiled"), due)
+            if (!skip || draw() > 0.2) continue
+            skip.click()
+            skipped = true
+            assert.ok(document.activeElement === words() && !skip.isConnected)
+        }
+    }
+})
