@@ -6,6 +6,7 @@ from typing import Annotated, Any
 
 from msgspec import UNSET, Meta, Struct, UnsetType
 
+from onpath.app.steps.block_data import Curves
 from onpath.lessons.checks import Verdict
 
 
@@ -61,4 +62,4 @@ class MeasuredMessage(Struct, frozen=True, tag_field="is", tag="measured"):
     """
 
     verdicts: dict[str, list[Verdict]]
-    truth: Annotated[dict[str, Any], Meta(extra={"typescript": "Curves"})] | None
+    truth: Curves | None

@@ -8,6 +8,7 @@ from typing import Annotated, Any
 from msgspec import Meta, Struct
 
 from onpath.app.channel.plant_messages import PlantMessage
+from onpath.app.lab.plot_rows import RowData
 
 SentCommand = Annotated[Mapping[str, Any], Meta(extra={"typescript": "Command"})]
 """A command that a button of the page sends."""
@@ -107,7 +108,7 @@ class StateMessage(Struct, frozen=True, kw_only=True, tag_field="is", tag="state
     drawn: bool
     waits: str
     own: bool
-    rows: Annotated[list[dict[str, Any]], Meta(extra={"typescript": "RowData[]"})]
+    rows: list[RowData]
     laws: list[str]
     shared: str
     sent: list[str]

@@ -1,7 +1,7 @@
 """Makes assets/web/channel/messages.ts: the types of all messages of this folder.
 
-Those of forms and of answers, which pages without a server have, too, are in
-assets/web/core/form_data.ts and given_data.ts.
+Those of forms, and what else pages without a server have, too, are in assets/web/core/form_data.ts
+and shared_data.ts.
 
 Run `python -m onpath.app.channel.typescript` after a change of messages or commands.
 """
@@ -21,12 +21,15 @@ from msgspec import inspect
 from onpath.app.channel.form_messages import FORMS as FORM_MESSAGES
 from onpath.app.channel.messages import BY_CHANGES, LabMessage, PageMessage
 from onpath.app.lab.commands.command_codec import command_structs
+from onpath.app.lab.plot_rows import RowData
+from onpath.app.steps.block_data import Curves
 from onpath.app.viser_adapter.data_channel import SUBPROTOCOL
 from onpath.assets import asset_path
+from onpath.lessons.checks import Verdict
 from onpath.lessons.given import Given
 
 FILE, FORMS = "web/channel/messages.ts", "web/core/form_data.ts"
-GIVEN = "web/core/given_data.ts"
+SHARED = "web/core/shared_data.ts"
 WIDTH = 120
 HEAD = """\
 // The messages of the channel between a page and its lab, made by app/channel/typescript.py from
@@ -36,18 +39,17 @@ HEAD_OF_FORMS = """\
 // The settings that a place shows, as data; made by app/channel/typescript.py from
 // app/channel/form_messages.py: change them there.
 """
-HEAD_OF_GIVEN = """\
-// A student's answers, as they are kept with and without a server; made by
-// app/channel/typescript.py from lessons/given.py: change them there.
+HEAD_OF_SHARED = """\
+// What pages with and without a server have: a student's answers, how tasks are judged, curves and
+// what can be plotted; made by app/channel/typescript.py from lessons/given.py, lessons/checks.py,
+// app/steps/block_data.py and app/lab/plot_rows.py: change them there.
 """
 CHANGES = """\
 /** A message with only the fields that have changed. */
 export type Changes<Message extends { is: string }> = Pick<Message, "is"> & Partial<Message>
 """
 IMPORTED = {
-    "../core/engine": ("RowData",),
-    "../core/lesson_data": ("ChartData", "Curves", "StepData"),
-    "../lessons/checks": ("Verdict",),
+    "../core/lesson_data": ("ChartData", "StepData"),
     "../lessons/notes": ("Notes",),
 }
 """Types that are written by hand, by file."""
@@ -67,12 +69,14 @@ def files() -> dict[str, str]:
     forms = _Writer(reads=False)
     own = [forms.type(each) for each in inspect.multi_type_info(FORM_MESSAGES)]
     head = [HEAD_OF_FORMS, *forms.interfaces]
-    given = _Writer(reads=True)
+    given, shared = _Writer(reads=True), _Writer(reads=False)
     given.type(inspect.type_info(Given))
+    told = [shared.type(inspect.type_info(each)) for each in (Curves, RowData, Verdict)]
+    elsewhere = {"../core/form_data": tuple(own), "../core/shared_data": tuple(told)}
     return {
         FORMS: "\n".join(head),
-        GIVEN: "\n".join([HEAD_OF_GIVEN, *given.interfaces]),
-        FILE: _messages_file({"../core/form_data": tuple(own)}),
+        SHARED: "\n".join([HEAD_OF_SHARED, *given.interfaces, *shared.interfaces]),
+        FILE: _messages_file(elsewhere),
     }
 
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+
+from msgspec import Struct
+from msgspec.structs import replace
 
 from onpath.lessons.words import Words
 from onpath.models.robot_files.guesses import Guess
@@ -47,6 +49,40 @@ class PlotRow:
     symbols: tuple[str, ...] = ()
     floats: bool = False
     beside: tuple[str, str] | None = None
+
+
+class RowLine(Struct, frozen=True):
+    """A line of each robot in a row: a number of a field.
+
+    Attributes:
+        at: index in the field.
+        name: if that of the robot is not enough, else empty.
+    """
+
+    field: str
+    at: int
+    name: str
+
+
+class RowData(Struct, frozen=True, kw_only=True):
+    """A quantity that can be plotted over time, for a page.
+
+    Attributes:
+        menu: what it is called where one chooses it.
+        label: what it is called at its axis.
+        scale: factor from SI to the unit.
+        least: the range that its axis has at least; if it `floats`, the size of this range,
+            wherever.
+    """
+
+    name: str
+    menu: str
+    label: str
+    unit: str
+    scale: float
+    least: tuple[float, float]
+    floats: bool
+    lines: tuple[RowLine, ...]
 
 
 ROWS = (
@@ -124,8 +160,8 @@ def row_data(
     words: Words,
     guesses: Sequence[Guess] = (),
     motors: Sequence[str] = (TORQUE,),
-) -> list[dict[str, Any]]:
-    """The rows that a robot can have, for a page; see `RowData` in assets/web/core/engine.ts.
+) -> list[RowData]:
+    """The rows that a robot can have, for a page.
 
     Args:
         fields: that are stored of the robot.
@@ -138,7 +174,7 @@ def row_data(
         return plain
     names = {row.name: "tau" if row.field == "u" else row.field for row in ROWS}
     return [
-        {**row, "label": with_mark(row["label"], guesses, names[row["name"]], words.language)}
+        replace(row, label=with_mark(row.label, guesses, names[row.name], words.language))
         for row in plain
     ]
 
@@ -146,7 +182,7 @@ def row_data(
 @lru_cache(maxsize=64)
 def _rows(
     fields: Fields, is_level_set: bool, words: Words, motors: frozenset[str]
-) -> list[dict[str, Any]]:
+) -> list[RowData]:
     sizes = dict(fields)
     rows = [
         _data(row, min(sizes[row.field], MOST_LINES), is_level_set and row.field in XI, words)
@@ -158,29 +194,30 @@ def _rows(
         return rows
     label, unit = _title(words(f"axis.{kind}"))
     pushed = {"menu": words(f"plot.{kind}"), "label": label, "unit": unit}
-    return [{**row, **pushed} if row["name"] == "torques" else row for row in rows]
+    return [replace(row, **pushed) if row.name == "torques" else row for row in rows]
 
 
-def _data(row: PlotRow, size: int, is_area: bool, words: Words) -> dict[str, Any]:
+def _data(row: PlotRow, size: int, is_area: bool, words: Words) -> RowData:
     if is_area:  # only the first line: the others have another unit
         size = 1
     kind = "-level_set" if is_area else "-space" if row.field in XI and size > 1 else ""
     label, unit = _title(words(f"axis.{row.name}{kind}"))
     symbols: Sequence[str] = row.symbols[:size] if size > 1 else ("",)
-    lines = [{"field": row.field, "at": i, "name": name} for i, name in enumerate(symbols)]
+    lines = [RowLine(row.field, i, name) for i, name in enumerate(symbols)]
     if row.beside is not None:
         field, key = row.beside
-        lines.append({"field": field, "at": 0, "name": words(key)})
-    return {
-        "name": row.name,
-        "menu": words(f"plot.{row.name}"),
-        "label": label,
-        "unit": unit,
-        "scale": row.scale**2 if is_area else row.scale,
-        "least": [AREA * limit if is_area else limit for limit in row.least],
-        "floats": row.floats,
-        "lines": lines,
-    }
+        lines.append(RowLine(field, 0, words(key)))
+    low, high = row.least
+    return RowData(
+        name=row.name,
+        menu=words(f"plot.{row.name}"),
+        label=label,
+        unit=unit,
+        scale=row.scale**2 if is_area else row.scale,
+        least=(AREA * low, AREA * high) if is_area else (low, high),
+        floats=row.floats,
+        lines=tuple(lines),
+    )
 
 
 def _title(axis: str) -> tuple[str, str]:

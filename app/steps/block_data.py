@@ -129,6 +129,14 @@ def answer_data(answer: Answer) -> dict[str, Any]:
     return {"times": answer.times, "values": answer.values} if answer.times else {}
 
 
-def curves_data(truth: Truth) -> dict[str, Any]:
+class Curves(msgspec.Struct, frozen=True):
+    """The same quantity of both robots over time, [s]."""
+
+    times: Sequence[float]
+    tracker: Sequence[float]
+    follower: Sequence[float]
+
+
+def curves_data(truth: Truth) -> Curves:
     """The curves of both robots."""
-    return {"times": truth.times, "tracker": truth.tracker, "follower": truth.follower}
+    return Curves(truth.times, truth.tracker, truth.follower)

@@ -106,7 +106,7 @@ def assert_shown(pupil: Pupil, step: Step) -> None:
     wanted = pupil.lesson.setup_at(pupil.index).plots
     is_level_set = tab.simulation.parameters.across == LEVEL_SET
     rows = row_data(tab.simulation.sample_layout.fields, is_level_set, ENGLISH)
-    named = {row["name"]: f"{row['label']} [{row['unit']}]" for row in rows}
+    named = {row.name: f"{row.label} [{row.unit}]" for row in rows}
     named |= {"phase": ENGLISH("plot.phase_name")}
     for plot in wanted:
         expect(tab.page.get_by_role("img", name=named[plot], exact=True)).to_have_count(1)

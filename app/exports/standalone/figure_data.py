@@ -10,6 +10,7 @@ from dataclasses import asdict
 from typing import Any
 
 import casadi as ca
+import msgspec
 import numpy as np
 
 from onpath.app.exports.standalone.drawings import drawings_data
@@ -123,12 +124,14 @@ def common_data(figure: FigureChoice, words: Words, numbers: Mapping[str, Any]) 
         "returns": RETURNS,
         "full": FULL,
         "strip": robot.drawing.strip,
-        "rows": row_data(
-            sample_layout(robot).fields,
-            figure.parameters.across == LEVEL_SET,
-            words,
-            guesses=figure.entry.guesses,
-            motors=robot.system.motor_units,
+        "rows": msgspec.to_builtins(
+            row_data(
+                sample_layout(robot).fields,
+                figure.parameters.across == LEVEL_SET,
+                words,
+                guesses=figure.entry.guesses,
+                motors=robot.system.motor_units,
+            )
         ),
         "logged": numbers["logged"],
         "efforts": _efforts(robot),

@@ -2,9 +2,8 @@
 // app/channel and app/lab/commands: change them there.
 
 import type { FormMessage, ValuesMessage } from "../core/form_data"
-import type { RowData } from "../core/engine"
-import type { ChartData, Curves, StepData } from "../core/lesson_data"
-import type { Verdict } from "../lessons/checks"
+import type { Curves, RowData, Verdict } from "../core/shared_data"
+import type { ChartData, StepData } from "../core/lesson_data"
 import type { Notes } from "../lessons/notes"
 
 export const PROTOCOL = "onpath-2"

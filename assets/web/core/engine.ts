@@ -1,6 +1,10 @@
 // What the parts of a page know of the robots, independently of how they are simulated; see local.ts.
 // Lengths are in metres, forces in newtons, times in seconds of the simulation.
 
+import type { RowData } from "./shared_data"
+
+export type { RowData }
+
 /** A point or a vector in the space of the end-points: two numbers, or three. */
 export type Vector = readonly number[]
 
@@ -35,23 +39,6 @@ export interface SideText {
     name: string
     text: string
     caption: string
-}
-
-/** A quantity that can be plotted over time; see app/lab/plot_rows.py. */
-export interface RowData {
-    name: string
-    /** What it is called where one chooses it. */
-    menu: string
-    /** What it is called at its axis. */
-    label: string
-    unit: string
-    /** Factor from SI to the unit. */
-    scale: number
-    /** The range that its axis has at least; if it `floats`, the size of this range, wherever. */
-    floats: boolean
-    least: readonly [number, number]
-    /** Lines of each robot: a number of a field, and a name if that of the robot is not enough. */
-    lines: readonly { field: string; at: number; name: string }[]
 }
 
 /** What a real arm has logged: curves over time from the beginning of a run on; see LogMessage. */

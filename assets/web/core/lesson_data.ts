@@ -1,11 +1,11 @@
 // The data that Python puts into the pages: see app/exports/site.
 
 import type { FigureData, Setting } from "./figure_data"
-import type { Answer } from "./given_data"
+import type { Answer, Curves } from "./shared_data"
 
 export type Robot = "tracker" | "follower"
 export const ROBOTS: Robot[] = ["tracker", "follower"]
-export type { Answer, Setting }
+export type { Answer, Curves, Setting }
 
 /** One action of a script or a link of a page without a server; it has one of these fields besides `side`. */
 export interface Action {
@@ -252,12 +252,6 @@ export interface PageData {
     figures: SiteFigure[]
     steps: StepData[]
     lessons: Record<string, { number: string; steps: number; required: number; tasks: string[] }>
-}
-
-export interface Curves {
-    times: number[]
-    tracker: number[]
-    follower: number[]
 }
 
 /** What kind of package this is. */

@@ -1,6 +1,6 @@
 // Packs notes into a text that fits a learning platform: 4,096 characters in SCORM 1.2. Pure functions.
 
-import type { Given } from "./given_data"
+import type { Given } from "./shared_data"
 
 /** What packing may leave out: points of a drawn curve, which keeps its ends and extremes; and the ends of long texts, which
  * the page must say. */

@@ -2,6 +2,7 @@
 
 import type { Better, Bound, Check, Compare, Once, Only, Robot, Phrases, Setting, SettingCheck, TimeWindow } from "../core/lesson_data"
 import { fixed, general, sum } from "../core/numbers"
+import type { Verdict } from "../core/shared_data"
 import { filled, localized } from "../core/words"
 
 export interface Happening {
@@ -24,17 +25,6 @@ export interface RunRecord {
     changed: string[]
     /** What was measured earlier: see earlier.ts. */
     before: ReadonlyMap<Check, number>
-}
-
-export interface Verdict {
-    passed: boolean
-    words: string
-    /** Of the time that it must last, from 0 to 1; null if it has no duration. */
-    share: number | null
-    /** Whether anything has been done in this run that it could judge. */
-    begun: boolean
-    /** When it was missed for good in this run, [s]; null if it was not. */
-    broken: number | null
 }
 
 type Words = Record<string, string>

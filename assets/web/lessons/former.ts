@@ -1,7 +1,7 @@
 // Notes as earlier versions kept them: the last answers, and the first ones beside them.
 
 import type { Answer } from "../core/lesson_data"
-import type { Given } from "../core/given_data"
+import type { Given } from "../core/shared_data"
 
 interface Former {
     answers: Record<string, Answer>

@@ -1,6 +1,6 @@
 // The progress and score that a learning platform receives for a lesson. Pure functions.
 
-import type { Given } from "../core/given_data"
+import type { Given } from "../core/shared_data"
 import type { BlockData, StepData } from "../core/lesson_data"
 import { statesOf } from "./derivation"
 import { given, givenTo, predicted, lastSaid, SECOND_TRY, type Notes } from "./notes"

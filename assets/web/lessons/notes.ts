@@ -1,7 +1,7 @@
 // A student's notes on the lessons: what was predicted, seen, answered and passed.
 
 import type { Answer, Curves, PageData } from "../core/lesson_data"
-import type { Given } from "../core/given_data"
+import type { Given } from "../core/shared_data"
 import { notesOfToday } from "./former"
 import type { Progress } from "./progress"
 

@@ -1,6 +1,6 @@
 // Keeps a student's progress in the browser; for a learning platform see scorm.ts.
 
-import type { Given } from "../core/given_data"
+import type { Given } from "../core/shared_data"
 import type { BlockData } from "../core/lesson_data"
 
 /** Shows a message about what is kept, in the page's texts. */

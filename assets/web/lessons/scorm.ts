@@ -1,6 +1,6 @@
 // Keeps progress in a learning platform, through the run-time of SCORM 1.2 or SCORM 2004.
 
-import type { Given } from "../core/given_data"
+import type { Given } from "../core/shared_data"
 import type { BlockData, Package } from "../core/lesson_data"
 import { packed, unpacked } from "../core/packed"
 import { parsed } from "./notes"

@@ -1,8 +1,8 @@
 // What a student has done in a lesson, and whether it is right.
 
 import type { PageData, TaskData, Answer, Curves } from "../core/lesson_data"
-import type { Given } from "../core/given_data"
-import { judge, statistic, wayOf, type Verdict } from "./checks"
+import type { Given, Verdict } from "../core/shared_data"
+import { judge, statistic, wayOf } from "./checks"
 import { EarlierRun } from "./earlier"
 import { blockOf, gradeOf, isRight } from "./grade"
 import { keep, noted, notesOf, passedTasks, lastSaid, type Notes } from "./notes"

@@ -4,7 +4,7 @@ import { made } from "../core/dom"
 import type { PageData, TaskData } from "../core/lesson_data"
 import { general } from "../core/numbers"
 import { localized, phrase } from "../core/words"
-import type { Verdict } from "../lessons/checks"
+import type { Verdict } from "../core/shared_data"
 import { passedTasks } from "../lessons/notes"
 import type { Student } from "../lessons/student"
 

@@ -385,7 +385,7 @@ def test_what_a_task_wants_is_drawn_in_a_row_that_its_robot_has() -> None:
         for index, step in enumerate(lesson.steps):
             name = lesson.setup_at(index).robot or lesson.front.robot
             robot = ROBOTS[name].make(ROBOTS[name].parameters())
-            rows = {row["name"] for row in row_data(sample_layout(robot).fields, False, ENGLISH)}
+            rows = {row.name for row in row_data(sample_layout(robot).fields, False, ENGLISH)}
             for task in step.tasks():
                 limits = limits_data(task, lesson.laws_shown(index), ENGLISH)
                 drawn += len(limits)

@@ -30,7 +30,7 @@ def labels(setup: StepSetup, first: PageSnapshot, words: Words) -> set[str]:
 
 def plots(setup: StepSetup, first: PageSnapshot) -> set[str]:
     """Names of the plots under the stage in a step: rows over time, and the phase plane."""
-    possible = {row["name"] for row in row_data(first.key.fields, False, ENGLISH)}
+    possible = {row.name for row in row_data(first.key.fields, False, ENGLISH)}
     return (possible | {"phase"}) & {"distance", *setup.plots}
 
 

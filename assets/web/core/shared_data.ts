@@ -1,5 +1,6 @@
-// A student's answers, as they are kept with and without a server; made by
-// app/channel/typescript.py from lessons/given.py: change them there.
+// What pages with and without a server have: a student's answers, how tasks are judged, curves and
+// what can be plotted; made by app/channel/typescript.py from lessons/given.py, lessons/checks.py,
+// app/steps/block_data.py and app/lab/plot_rows.py: change them there.
 
 /** The answer to a prediction: an option, a sketched curve, or neither if it was skipped. */
 export interface Answer {
@@ -54,4 +55,48 @@ export interface Given {
     lesson?: string
     /** versions of the lesson and of OnPath. */
     product?: string
+}
+
+/** The same quantity of both robots over time, [s]. */
+export interface Curves {
+    times: number[]
+    tracker: number[]
+    follower: number[]
+}
+
+/** A line of each robot in a row: a number of a field. */
+export interface RowLine {
+    field: string
+    /** index in the field. */
+    at: number
+    /** if that of the robot is not enough, else empty. */
+    name: string
+}
+
+/** A quantity that can be plotted over time, for a page. */
+export interface RowData {
+    name: string
+    /** what it is called where one chooses it. */
+    menu: string
+    /** what it is called at its axis. */
+    label: string
+    unit: string
+    /** factor from SI to the unit. */
+    scale: number
+    /** the range that its axis has at least; if it `floats`, the size of this range, wherever. */
+    least: [number, number]
+    floats: boolean
+    lines: RowLine[]
+}
+
+/** Whether a check is satisfied, and a sentence with the measured and the required value. */
+export interface Verdict {
+    passed: boolean
+    words: string
+    /** of the time that it must last, from 0 to 1; None if it has no duration. */
+    share: number | null
+    /** whether anything has been done in this run that it could judge. */
+    begun: boolean
+    /** when it was missed for good in this run, [s]; None if it was not. */
+    broken: number | null
 }
