@@ -172,8 +172,15 @@ def test_another_language_comes_without_a_reload_and_leaves_open_what_is_open(ta
     expect(tab.page.get_by_role("img", name="Zwei Roboter")).to_have_count(1)
     expect(tab.page.get_by_role("button", name="Beide festhalten")).to_be_visible()
     expect(tab.page.get_by_role("img", name="Abstand von der Bahn [mm]")).to_be_visible()
+    speed = tab.page.locator("#op-panel [data-name=speed] input.typed")
+    speed.fill("1")  # half of a number
+    before = tab.simulation.parameters.speed
     tab.ask(c.SetLanguage("en"))
     expect(tab.page.locator("html")).to_have_attribute("lang", "en")
+    expect(speed).to_be_focused()
+    expect(speed).to_have_value("1")
+    assert tab.simulation.parameters.speed == before != 1.0
+    speed.press("Escape")
     assert tab.page.evaluate("window.isFirst")
 
 

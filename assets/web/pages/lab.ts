@@ -161,8 +161,8 @@ class Face {
 
     /** Remove it; returns what was open. */
     end(): string {
+        this.ended.abort() // first: a box that is removed while somebody types in it is not left
         const open = this.shell.end()
-        this.ended.abort()
         this.column.element.remove()
         this.stage.element.remove()
         this.element.remove()
