@@ -12,21 +12,23 @@ Request = TypeVar("Request")
 
 
 class ScriptPlayer(Generic[Request]):
-    """A script that is being played, after which the simulation pauses.
-
-    Its times count from the simulation's time zero.
+    """A script that is being played; its times count from the simulation's time zero.
 
     Args:
         script: commands and their times, [s].
         until: end of the script, [s].
+        stop: whether to pause the simulation at the end of the script.
 
     Attributes:
         finished: whether the script was played to its end, not cancelled.
     """
 
-    def __init__(self, script: Iterable[tuple[float, Request]], until: float) -> None:
+    def __init__(
+        self, script: Iterable[tuple[float, Request]], until: float, stop: bool = True
+    ) -> None:
         self._until = until
         self._waiting = deque(sorted(script, key=lambda timed: timed[0]))
+        self._stop = stop
         self._before = 0.0  # simulated time before the last reset, [s]
         self._run: int | None = None
         self.finished = False
@@ -51,7 +53,8 @@ class ScriptPlayer(Generic[Request]):
                 self._run, self._before = simulation.run_number, self._before + before
         if self._now(simulation) < self._until - 1e-9:
             return False
-        simulation.running = False
+        if self._stop:
+            simulation.running = False
         self.finished = True
         return True
 
