@@ -139,10 +139,9 @@ def optional_minutes(lesson: Lesson) -> Minutes:
     return together(step_minutes(step) for step in lesson.steps if step.optional)
 
 
-def lesson_minutes(lesson: Lesson) -> tuple[int, int]:
-    """Whole minutes of a lesson without its optional steps, and those of the optional steps."""
-    optional = optional_minutes(lesson).total
-    return max(1, round(required_minutes(lesson).total)), round(optional)
+def lesson_minutes(lesson: Lesson) -> int:
+    """Whole minutes of a lesson without its optional steps."""
+    return max(1, round(required_minutes(lesson).total))
 
 
 @singledispatch

@@ -81,6 +81,7 @@ class FormField(Struct, frozen=True, omit_defaults=True, kw_only=True):
         tone: of a note or a button: "main", "warning" or none; of a note also the side whose colour
             it has, "of_left" or "of_right", or "ranks", below the colours of the rank test's map.
         picture: the address of a button's picture.
+        icon: the sign that stands on a button instead of its label.
         section: a heading above all fields of the same section.
     """
 
@@ -106,6 +107,7 @@ class FormField(Struct, frozen=True, omit_defaults=True, kw_only=True):
     tone: str = ""
     section: str = ""
     picture: str = ""
+    icon: Literal["", "draw", "undo", "redo"] = ""
 
 
 class FormGroup(Struct, frozen=True, omit_defaults=True, kw_only=True):

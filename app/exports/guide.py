@@ -42,7 +42,7 @@ def guide(
         routes=[(route, route_stops(route, course, words)) for route in course.routes.values()],
         lecture=bool(course.lecture),
         tests=list(titles_of_tests(course, words).values()),
-        test_minutes=lesson_minutes(forms[0])[0] if forms else 0,
+        test_minutes=lesson_minutes(forms[0]) if forms else 0,
         forms=list(zip(FORMS, forms, strict=False)) if test else [],
         apart=bool(forms) and whole and not test,
         numbers=course.numbers(),

@@ -365,10 +365,17 @@ def _fields(lab: _Lab, marks: Mapping[str, FieldValue], words: Words) -> dict[st
             kind="button",
             label=words("setup.draw"),
             help=words("design.draw_hint"),
+            icon="draw",
             act={"is": "freehand"},
         ),
-        _button("undo", words("design.undo"), Undo(), words("design.undo_hint"), needs="can_undo"),
-        _button("redo", words("design.redo"), Redo(), words("design.redo_hint"), needs="can_redo"),
+        structs.replace(
+            _button("undo", words("design.undo"), Undo(), words("design.undo_hint"), "can_undo"),
+            icon="undo",
+        ),
+        structs.replace(
+            _button("redo", words("design.redo"), Redo(), words("design.redo_hint"), "can_redo"),
+            icon="redo",
+        ),
         FormField(name="pace", kind="note", label=""),
         *_law_fields(robot, chosen, words),
     ]

@@ -28,15 +28,11 @@ def lesson_sheet(run: LessonState) -> LessonSheet:
 def lesson_card(lesson: Lesson, run: LessonState, number: str) -> LessonCard:
     """A lesson with its times, and how much of it is done."""
     words, notes = run.words, run.progress.notes.get(lesson.name)
-    tasks, (minutes, optional) = lesson.required_tasks(), lesson_minutes(lesson)
+    tasks = lesson.required_tasks()
     seen = 0 if notes is None else min(notes.seen, lesson.required_steps())
     done = 0 if notes is None else sum(task.id in notes.tasks for task in tasks)
     steps = lesson.required_steps()
-    facts = [
-        words("lesson.minutes", minutes=minutes),
-        *([words("lesson.minutes_optional", minutes=optional)] if optional else []),
-        words("lesson.tasks", done=done, all=len(tasks)),
-    ]
+    facts = [words("lesson.minutes", minutes=lesson_minutes(lesson))]
     if lesson.language != words.language:
         facts.append(words("lesson.english"))
     return LessonCard(
@@ -59,7 +55,7 @@ def _test_cards(name: str, run: LessonState) -> list[LessonCard]:
     words, lesson = run.words, run.course.lesson(name, run.words.language)
     notes = run.progress.notes.get(taken(run.progress, name))
     handed_in = (notes or Notes()).handed_in
-    minutes = words("lesson.minutes", minutes=lesson_minutes(lesson)[0])
+    minutes = words("lesson.minutes", minutes=lesson_minutes(lesson))
     card = LessonCard(
         name=name,
         number="",
@@ -103,7 +99,7 @@ def route_stops(route: Route, course: Course, words: Words) -> list[str]:
 
 
 def _test_stop(name: str, title: str, course: Course, words: Words) -> str:
-    minutes, _ = lesson_minutes(course.lesson(name, words.language))
+    minutes = lesson_minutes(course.lesson(name, words.language))
     return f"{title}, {words('lesson.minutes', minutes=minutes)}"
 
 

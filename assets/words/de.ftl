@@ -88,17 +88,11 @@ equations-figure = Bild { $number }
 lesson-lessons = Lektionen
 lesson-choose = Lektionen: vorhersagen, probieren, sehen, verstehen
 lesson-minutes = { $minutes } min
-lesson-minutes_optional = und { $minutes } min freiwillig
 lesson-warm_up = Aus einer früheren Lektion, zählt nicht
 lesson-optional = freiwillig
 lesson-branch = zu deiner Antwort
 lesson-past_optional = Die freiwilligen Schritte überspringen, zu Schritt { $step }
 lesson-past_all = Die freiwilligen Schritte überspringen und abschließen
-lesson-tasks =
-    { $all ->
-        [one] { $done } von 1 Aufgabe
-       *[other] { $done } von { $all } Aufgaben
-    }
 lesson-aims = Wozu, und was du brauchst
 lesson-needs = Du brauchst:
 lesson-goals = Danach kannst du:

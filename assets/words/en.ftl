@@ -90,17 +90,11 @@ equations-figure = figure { $number }
 lesson-lessons = Lessons
 lesson-choose = Lessons: predict, try, see, explain
 lesson-minutes = { $minutes } min
-lesson-minutes_optional = and { $minutes } min optional
 lesson-optional = optional
 lesson-warm_up = From an earlier lesson, and not counted
 lesson-branch = for your answer
 lesson-past_optional = Skip the optional steps, to step { $step }
 lesson-past_all = Skip the optional steps and finish
-lesson-tasks =
-    { $all ->
-        [one] { $done } of 1 task
-       *[other] { $done } of { $all } tasks
-    }
 lesson-aims = What it is for, and what you need
 lesson-needs = You need:
 lesson-goals = Afterwards you can:

@@ -97,10 +97,7 @@ def start_page(
 
 def entry_of(lesson: Lesson, number: str, address: str, words: Words) -> LessonEntry:
     """A lesson's entry in the list of the start page."""
-    minutes, optional = lesson_minutes(lesson)
-    facts = [words("lesson.minutes", minutes=minutes)]
-    if optional:
-        facts.append(words("lesson.minutes_optional", minutes=optional))
+    facts = [words("lesson.minutes", minutes=lesson_minutes(lesson))]
     if lesson.language != words.language:
         facts.append(words("lesson.english"))
     return LessonEntry(number=number, lesson=lesson, address=address, facts=facts)

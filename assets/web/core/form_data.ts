@@ -59,6 +59,8 @@ export interface FormField {
     section?: string
     /** the address of a button's picture. */
     picture?: string
+    /** the sign that stands on a button instead of its label. */
+    icon?: "" | "draw" | "redo" | "undo"
 }
 
 /** Fields that belong together. */

@@ -24,6 +24,8 @@ export interface Limit {
     tone: Tone
 }
 
+type Named = Curve & { name: string; tone: Tone }
+
 export interface Axes {
     label: string
     unit: string
@@ -34,11 +36,13 @@ export interface Axes {
 }
 
 const MARGIN = { left: 42, right: 14, top: 24 }
-const BOTTOM = { times: 24, none: 8 } // [px] below the plot, with the numbers of the axis of time or without
+const BOTTOM = { times: 24, none: 14 } // [px] below the plot, with the numbers of the axis of time or without
 const TITLE = 9 // [px] from the top to the middle of the title
 const FONT = "12px system-ui, sans-serif"
 const BOLD = "600 13px system-ui, sans-serif"
 const HALF = 8 // [px], half the height of a label
+const SAMPLE = 18 // [px] of a line before its name above the plot
+const SAME = 2 // [px], of lines that lie on each other
 const TRIED = 25 // number of places along a line that are tried for its name
 const ASIDES = [[-14, 14], [-32, 32], [-50, 50]] // [px], tried distances of the middle of its name from a line
 const LEAST_PEAK = 0.004 // share of the height below which a peak is not labelled
@@ -69,6 +73,7 @@ export class Chart {
     namesAll = true
     private boxes: Box[] = []
     private places: (number | undefined)[] = [] // times at which lines are named
+    private told: readonly string[] = [] // names of lines that stand above the plot
 
     constructor(readonly texts: Texts, public axes: Axes, changed: () => void) {
         this.sheet = new Sheet(changed, true)
@@ -154,10 +159,21 @@ export class Chart {
         ink.font = FONT
         write(unit ? `${label} [${unit}]` : label, "ink")
         ink.font = BOLD
-        const named = this.readings.map(({ name, value }) => `${name} ${value}`)
-        const fit = (texts: string[]) => x + texts.reduce((sum, text) => sum + ink.measureText(text).width + 14, -14) <= this.sheet.width
-        const shown = [named, this.readings.map(({ value }) => value)].find(fit) ?? []
-        shown.forEach((text, i) => write(text, this.readings[i]!.tone))
+        const { readings } = this
+        const fit = (texts: string[], before: number) => x + texts.reduce((sum, text) => sum + before + ink.measureText(text).width + 14, -14) <= this.sheet.width
+        const named = readings.map(({ name, value }) => `${name} ${value}`), values = readings.map(({ value }) => value)
+        this.told = fit(named, SAMPLE) ? readings.map(({ name }) => name) : []
+        const shown = this.told.length ? named : fit(values, 0) ? values : []
+        shown.forEach((text, i) => {
+            const { tone } = readings[i]!, line = this.lines.find(each => each.name === this.told[i])
+            if (line) {
+                ink.setLineDash(line.dashed ? [7, 4] : [])
+                stroke(ink, [[x, TITLE], [x + SAMPLE - 5, TITLE]], tones()[tone], 2.5)
+                ink.setLineDash([])
+                x += SAMPLE
+            }
+            write(text, tone)
+        })
         this.boxes.push({ left: 0, right: x - 8, top: TITLE - HALF, bottom: TITLE + HALF })
         ink.font = FONT
     }
@@ -201,7 +217,7 @@ export class Chart {
         return [this.x(Math.max(span.from, this.from)), this.x(Math.min(span.until, this.until))]
     }
 
-    /** Name what acts: above it or, where there is no room, within. */
+    /** Name what acts: within it, beside the lines, or else above it. */
     private spanNames(ink: CanvasRenderingContext2D): void {
         ink.font = FONT
         ink.textAlign = "center"
@@ -211,8 +227,11 @@ export class Chart {
             const text = phrase(this.texts, `chart.${span.kind}`)
             const half = ink.measureText(text).width / 2
             const x = Math.min(Math.max((left + right) / 2, this.x(this.from) + half), this.x(this.until) - half)
-            const within = MARGIN.top + TITLE
-            const row = [TITLE + 3, within, within + 2 * HALF, this.y(this.axes.bottom) - HALF - 2].find(y => !this.taken({ left: x - half, right: x + half, top: y - HALF, bottom: y + HALF }))
+            const box = (y: number): Box => ({ left: x - half, right: x + half, top: y - HALF, bottom: y + HALF })
+            const within = [MARGIN.top + TITLE, MARGIN.top + TITLE + 2 * HALF, this.y(this.axes.bottom) - HALF - 2]
+            const fits = right - left > 2 * half
+            const rows = [...within.filter(y => fits && !this.crossed(box(y))), TITLE + 3, ...within]
+            const row = rows.find(y => !this.taken(box(y)))
             if (row !== undefined) letters(ink, text, x, row, tones().ink, tones()[span.kind])
         }
     }
@@ -309,15 +328,23 @@ export class Chart {
         })
     }
 
-    /** Name each line beside it, where it does not cover anything and is far from the others. */
+    /** Name each line beside it, where it does not cover anything and is far from the others; lines that lie on each other
+     * together, and none that is named above the plot. */
     private names(ink: CanvasRenderingContext2D): void {
         const { lines, ghost, texts, from, until } = this
         ink.textAlign = "center"
-        const shown: (Curve & { name: string; tone: Tone })[] = [...lines]
-        if (ghost) shown.push({ ...ghost, name: phrase(texts, "chart.yours"), tone: "yours" })
+        const all: Named[] = lines.filter(line => !this.told.includes(line.name))
+        if (ghost) all.push({ ...ghost, name: phrase(texts, "chart.yours"), tone: "yours" })
+        const groups: Named[][] = []
+        for (const line of all.filter(each => each.times.length)) {
+            const group = groups.find(([other]) => this.coincide(line, other!))
+            if (group) group.push(line)
+            else groups.push([line])
+        }
+        const shown = groups.map(([line]) => line!)
         shown.forEach((line, i) => {
-            if (!line.times.length) return
-            const half = ink.measureText(line.name).width / 2 + 3
+            const parts = groups[i]!.map(({ name, tone }, k) => ({ text: k < groups[i]!.length - 1 ? `${name}, ` : name, tone }))
+            const half = parts.reduce((sum, { text }) => sum + ink.measureText(text).width, 0) / 2 + 3
             const [first, last] = [Math.max(line.times[0]!, from), Math.min(line.times[line.times.length - 1]!, until)]
             const apart = (time: number) => Math.min(90, ...shown.map(other => {
                 const [own, its] = [valueAt(line, time), valueAt(other, time)]
@@ -332,7 +359,12 @@ export class Chart {
                 if (y < MARGIN.top || y > this.y(this.axes.bottom) - 6) return false
                 const box = { left: x - half, right: x + half, top: y - HALF, bottom: y + HALF }
                 if ((clear && this.crossed(box)) || this.taken(box)) return false
-                letters(ink, line.name, x, y, tones()[line.tone], tones().paper)
+                let left = x - half + 3
+                for (const { text, tone } of parts) {
+                    const { width } = ink.measureText(text)
+                    letters(ink, text, left + width / 2, y, tones()[tone], tones().paper)
+                    left += width
+                }
                 return true
             }
             const height = (time: number, aside: number) => this.y(valueAt(line, time) ?? 0) + aside
@@ -348,6 +380,13 @@ export class Chart {
                 if (beyond + half < this.x(until) && [-8, -24, -40].some(aside => write(beyond, height(last, aside), clear))) return
             }
         })
+    }
+
+    /** Whether two lines lie on each other wherever both are shown. */
+    private coincide(line: Curve, other: Curve): boolean {
+        const { from, until } = this
+        const times = line.times.filter(time => time >= from && time <= until && valueAt(other, time) !== null)
+        return times.length > 0 && times.every(time => Math.abs(this.y(valueAt(line, time)!) - this.y(valueAt(other, time)!)) <= SAME)
     }
 
     private room(x: number, y: number, half: number): boolean {

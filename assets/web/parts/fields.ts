@@ -5,7 +5,7 @@ import { draftOf, keepDraft } from "../core/drafts"
 import type { FormField, FormOption } from "../core/form_data"
 import { Scale, typedNumber } from "../core/scales"
 import { phrase, WARNS, written, type Texts } from "../core/words"
-import { icon, isDrawn } from "./icons"
+import { icon } from "./icons"
 import { PolePlane } from "./pole_plane"
 
 const RESTS = 300 // [ms] after the last touch for which the hand's value stays
@@ -500,8 +500,8 @@ class ButtonRow extends FieldRow {
     protected name(): void {
         const { button, field } = this
         if (field.picture) button.replaceChildren(Object.assign(made("img", ""), { src: field.picture, alt: "" }), made("b", "", field.label), icon("right"))
-        else if (isDrawn(field.name)) {
-            button.replaceChildren(icon(field.name), made("span", "", field.label))
+        else if (field.icon) {
+            button.replaceChildren(icon(field.icon), made("span", "", field.label))
             button.ariaLabel = field.label
         } else tell(button, field.label)
         this.element.title = button.ariaLabel ? [field.label, field.help].filter(Boolean).join(": ") : (field.help ?? "")

@@ -6,7 +6,6 @@ import type { FormField, FormGroup, FormMessage, FormNeed } from "../core/form_d
 import { recalled, remember } from "../core/memory"
 import { phrase } from "../core/words"
 import { rowOf, same, type FormHost, type FieldRow, type RowForm } from "./fields"
-import { isDrawn } from "./icons"
 
 const OPENED = "onpath-groups" // which groups are open, in the browser's memory
 const LOW = 900 // [px] of the window's height, below which one group is open at a time
@@ -191,7 +190,7 @@ class GroupView {
                 last = row
                 continue
             }
-            const drawn = isDrawn(field.name)
+            const drawn = Boolean(field.icon)
             if (!run || drawn !== areDrawn) {
                 run = runs.get(field.name) ?? made("div", "acts")
                 runs.set(field.name, run)

@@ -17,11 +17,6 @@ const LINES = {
 
 export type Icon = keyof typeof LINES
 
-/** Whether a button of a form is drawn, beside the pictures of a choice; all others are words. */
-export function isDrawn(name: string): name is "draw" | "undo" | "redo" {
-    return name === "draw" || name === "undo" || name === "redo"
-}
-
 export function icon(name: Icon): SVGSVGElement {
     return svg("svg", { viewBox: "0 0 24 24", class: "op-icon", "aria-hidden": "true" }, svg("path", { d: LINES[name] }))
 }

@@ -24,17 +24,15 @@ export function chooseLesson(texts: Texts, { lessons, routes, open }: LessonShee
     return sheet
 }
 
-/** A lesson as one button, with its picture, and a ring of what is done around its number. */
+/** A lesson as one button, with its picture; below that, how much is done of one that is begun. */
 function cardOf(texts: Texts, lesson: LessonCard, isNext: boolean, act: () => void): HTMLElement {
-    const ring = made("span", "ring", lesson.finished ? icon("done") : lesson.number || "?")
-    ring.style.setProperty("--done", String(lesson.done))
-    ring.setAttribute("aria-hidden", "true")
     const name = lesson.number ? `${lesson.number}. ${lesson.title}` : lesson.title
     const state = lesson.finished ? "lesson.done" : lesson.begun ? "lesson.begun" : ""
     const facts = [...(state ? [phrase(texts, state)] : []), ...lesson.facts].flatMap(each => [" · ", made("span", "", each)]).slice(1)
     const card = pressed(`card${isNext ? " next" : ""}`, "", act)
-    card.append(ring, made("b", "", name), made("span", "summary", lesson.summary), made("span", "facts", ...facts))
+    card.append(made("b", "", name), made("span", "summary", lesson.summary), made("span", "facts", lesson.finished ? icon("done") : "", ...facts))
     if (lesson.picture) card.prepend(Object.assign(made("img", "about"), { src: lesson.picture, alt: "" })) // its title stands beside it
+    if (lesson.begun && !lesson.finished) card.append(Object.assign(made("progress", ""), { value: lesson.done, ariaHidden: "true" }))
     if (isNext) card.append(made("b", "here", phrase(texts, lesson.begun ? "lesson.go_on_here" : "lesson.begin_here")))
     return card
 }

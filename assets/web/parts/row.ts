@@ -111,8 +111,8 @@ export class Row {
     }
 }
 
-/** A number with as many decimals as its axis can tell apart. */
+/** A number with as many decimals as its axis can tell apart; 0 has none. */
 export function significantly(texts: Texts, value: number, { bottom, top }: { bottom: number; top: number }): string {
     const decimals = Math.min(4, Math.max(0, 2 - Math.floor(Math.log10(top - bottom))))
-    return written(texts, value, decimals)
+    return written(texts, value, Math.abs(value) < 0.5 * 10 ** -decimals ? 0 : decimals)
 }

@@ -91,6 +91,26 @@ test("lines are drawn within the axes, and each is named once at most, by itself
     }
 })
 
+test("lines that lie on each other are named together, others apart, and none that is named above the plot", () => {
+    const draw = chance(6)
+    for (let k = 0; k < 60; k++) {
+        const same = draw() < 0.5, value = 100 * draw() - 50, other = same ? value + 1.4 * draw() - 0.7 : value > 0 ? value - 20 : value + 20
+        const chart = new Chart(TEXTS, { label: "Distance", unit: "mm", bottom: -60, top: 60 }, () => {})
+        chart.lines = [value, other].map((each, i) => ({ name: `line ${i}`, tone: `side${i as 0 | 1}`, dashed: i === 1, times: [0, 10], values: [each, each] }))
+        const write = (width: number) => {
+            resize(chart.sheet.canvas, width, 200)
+            chart.draw()
+            return inkOf(chart.sheet.canvas).texts.filter(each => each.text.includes("line"))
+        }
+        const [one, two] = write(600)
+        assert.deepEqual([one!.text, two!.text], same ? ["line 0, ", "line 1"] : ["line 0", "line 1"])
+        if (same) assert.ok(one!.y === two!.y && Math.abs(two!.x - one!.x - 7 * 7) < 1e-9)
+        chart.readings = [0, 1].map(i => ({ name: `line ${i}`, value: "0", tone: `side${i as 0 | 1}` }))
+        assert.deepEqual(write(600).map(each => each.text), ["line 0 0", "line 1 0"])
+        assert.ok(!write(200).some(each => /line \d 0/.test(each.text)))
+    }
+})
+
 test("a chart that cannot be seen draws nothing", () => {
     assert.deepEqual(drawn(1, 0, 0).texts, [])
 })
