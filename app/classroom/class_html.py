@@ -237,11 +237,11 @@ def dots_view(states: Sequence[State], words: Words) -> str:
     """A dot for each student who is here, and how many are in each state."""
     order = list(DOTS)
     shown = [(state, DOTS[state][0].hex) for state in sorted(states, key=order.index, reverse=True)]
-    counts = [
-        (colour.hex, words(many, count=states.count(state)))
-        for state, (colour, _, many, _) in DOTS.items()
-        if state in states
-    ]
+    counts, more = list[tuple[str, str]](), 0
+    for state, (colour, _, many, _) in reversed(DOTS.items()):
+        if count := states.count(state):
+            counts.insert(0, (colour.hex, words(many, count=count, more=more)))
+            more += count
     return render("class/dots.html", dots=shown, counts=counts)
 
 

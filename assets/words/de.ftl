@@ -383,8 +383,16 @@ class-cell_here = da
 class-cell_answered = geantwortet
 class-cell_right = richtig
 class-cell_changed = geändert
-class-dots_here = { $count } da
-class-dots_answered = { $count } geantwortet
+class-dots_here =
+    { $more ->
+        [0] { $count } da
+       *[other] { $count } noch nicht
+    }
+class-dots_answered =
+    { $more ->
+        [0] { $count } geantwortet
+       *[other] { $count } anders geantwortet
+    }
 class-dots_right = { $count } richtig
 class-dots_changed = { $count } geändert
 class-proposal_explain = { $percent } % liegen richtig: erklären?

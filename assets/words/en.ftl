@@ -385,8 +385,17 @@ class-cell_here = here
 class-cell_answered = answered
 class-cell_right = right
 class-cell_changed = changed
-class-dots_here = { $count } here
-class-dots_answered = { $count } answered
+# $more: how many are in one of the states that follow.
+class-dots_here =
+    { $more ->
+        [0] { $count } here
+       *[other] { $count } not yet
+    }
+class-dots_answered =
+    { $more ->
+        [0] { $count } answered
+       *[other] { $count } answered otherwise
+    }
 class-dots_right = { $count } right
 class-dots_changed = { $count } changed
 class-proposal_explain = { $percent } % are right: explain it?

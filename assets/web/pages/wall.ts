@@ -8,6 +8,8 @@ import type { WallMessage } from "../channel/messages"
 import { Sketch } from "../parts/sketch"
 import { openScreen } from "./screen"
 
+const MOST = 0.45 // share of the height that a text above the robots may take
+
 class Wall {
     readonly element: HTMLElement
     private readonly sketch: Sketch
@@ -25,7 +27,8 @@ class Wall {
         this.closing.role = "timer"
         this.asked.role = "status"
         this.element = made("main", "", this.asked, this.closing, this.stage, this.join)
-        new ResizeObserver(() => this.place()).observe(this.stage)
+        const sizes = new ResizeObserver(() => { this.fit(); this.place() })
+        for (const each of [this.element, this.stage]) sizes.observe(each)
         engine.on(change => {
             if (change === "class") this.hear(engine.wall!)
             else if (change !== "samples") this.place()
@@ -39,12 +42,27 @@ class Wall {
         this.fill(this.asked, asked)
         tell(this.closing, closing === null ? note : String(closing))
         this.closing.classList.toggle("runs", closing !== null)
+        this.fit()
     }
 
     private fill(element: HTMLElement, html: string): void {
         if (this.shown.get(element) === html) return
         this.shown.set(element, html)
         element.replaceChildren(elementsOf(html))
+    }
+
+    /** Put the robots under a short text, and beside a longer one, which may be smaller; without them, a still longer one has two columns. */
+    private fit(): void {
+        const { element, asked } = this
+        const fits = (shape: string, ...zooms: number[]) => {
+            element.className = shape
+            return zooms.some(zoom => {
+                asked.style.setProperty("zoom", String(zoom))
+                return asked.scrollHeight <= asked.clientHeight && asked.scrollWidth <= asked.clientWidth
+            })
+        }
+        const isShort = () => asked.offsetHeight <= MOST * element.clientHeight
+        if (!(fits("", 1) && isShort()) && !fits("beside", 1, 0.9, 0.8, 0.7)) fits("long", 1, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4)
     }
 
     /** Put the names over the robots. */

@@ -401,8 +401,14 @@ def test_dots_and_proposal_follow_from_the_answers(
     assert isinstance(block, Choice)
     given = [option for option in options if option is not None]
     right = sum(block.options[option].right for option in given)
-    for key, count in (("right", right), ("answered", len(given) - right)):
-        assert (ENGLISH(f"class.dots_{key}", count=count) in lecture.answers.dots()) == bool(count)
+    wrong, silent = len(given) - right, len(options) - len(given)
+    counts = (
+        ("not yet", silent) if given else ("here", silent),
+        (("answered otherwise", wrong) if right else ("answered", wrong)),
+        ("right", right),
+    )
+    told = re.findall(r"●</span> (.+?)</span>", lecture.answers.dots())
+    assert told == [f"{count} {words}" for words, count in counts if count]
     assert lecture.answers.dots().count("border-radius:50%") == len(options)
     found = r'value="(\d+)".*?<bdi>(\w+)</bdi>.*?</span> (\w+)'
     cells = re.findall(found, lecture.answers.grid(), re.DOTALL)
@@ -419,7 +425,7 @@ def test_dots_and_proposal_follow_from_the_answers(
     told = ENGLISH(f"class.proposal_{wanted}", percent=round(100 * share))
     assert lecture.answers.proposal() == (told if given else "")
     lecture.lead("ask_again")
-    assert ENGLISH("class.dots_here", count=len(options)) in lecture.answers.dots()
+    assert f" {len(options)} here<" in lecture.answers.dots()
     lecture.lead("close_votes")
     lecture.clock.time += COUNT_DOWN + 0.1
     assert lecture.answers.proposal() == ""  # nobody has answered again
