@@ -132,7 +132,7 @@ class Action(Data, frozen=True):
         reset: put both robots back to the start.
         run: run or pause.
         identify: fit the controller's model to the measured motion.
-        start: put both robots to another start, and begin anew there.
+        start: put both robots to another start, and restart there.
         rate: how fast time goes from now on, compared with the student's own tempo; 0.25 is slow
             motion.
         only: the robot that hold and pull act on; empty for both.

@@ -9,7 +9,7 @@ In Python, without a browser:
 
 `run.plot()` draws it, `run.to_csv("a.csv")` writes it; `help(onpath.simulate)` describes the
 arguments. Robot, path and law come first, in this order, in every function, and on the command line
-as `--robot`, `--path` and `--law`: each is a name, a text, a file or an object. A law of one's own
+as `--robot`, `--path` and `--law`: each is a name, a text, a file or an object. A custom law
 in CasADi is made with `onpath.followed`, `onpath.tangential` and `onpath.own_gain`, of what
 `help(onpath.View)` lists; one that is a function is given what `help(onpath.Now)` lists.
 `onpath.sweep` and `onpath.arena` take several of each, `onpath.figure` makes a live page, and

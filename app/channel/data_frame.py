@@ -114,7 +114,7 @@ class FrameSource:
             self.forget()
 
     def forget(self) -> None:
-        """Tell the page everything anew."""
+        """Tell the page everything again."""
         self._latest.clear()
         self._simulation: Simulation | None = None
         self._run, self._history, self._is_area = 0, None, False

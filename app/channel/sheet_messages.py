@@ -105,7 +105,7 @@ class IdentifyMyself(
 
 
 class LinkWord(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="link"):
-    """Give a word of one's own, which links two tests, or take it back with an empty one.
+    """Give a word of the student's own, which links two tests, or take it back with an empty one.
 
     Answered by `SeatAnswer`.
     """
@@ -403,7 +403,8 @@ class ClassMessage(Struct, frozen=True, kw_only=True, tag_field="is", tag="class
         asked: whether the teacher has been asked to give that place back.
         asks: by what a member is to identify oneself, as the label of the field; empty: by nothing.
         identification: what the member has typed there.
-        linked: whether the member has given a word of one's own; "shared": so that another one has.
+        linked: whether the member has given the word that links two tests; "shared": so that
+            another one has.
     """
 
     membership: Literal["none", "elsewhere", "guest", "member"]

@@ -42,7 +42,7 @@ class Recorder:
 
 
 class CurrentInstant:
-    """The instant of some runs, made anew only when something has changed."""
+    """The instant of some runs, made again only when something has changed."""
 
     def __init__(self) -> None:
         self._now: Instant | None = None

@@ -75,7 +75,7 @@ def arena(
 
     Args:
         robot: one as for `onpath.simulate`, or several.
-        law: a law of one's own, or several, as for `onpath.simulate`.
+        law: a custom law, or several, as for `onpath.simulate`.
         only: compare only the laws given, which may also be names of `onpath.laws()`.
         rounds: number of rounds. Each has five obstructions for each robot; the first is on the
             circle with an exact model, others have random paths and conditions.

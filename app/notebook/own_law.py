@@ -1,4 +1,4 @@
-"""What a law of one's own is made of: see `python_law` and models/README.md."""
+"""What a custom law is made of: see `python_law` and models/README.md."""
 
 from onpath.models.control.laws.law import View as View
 from onpath.models.control.laws.law import own_gain as own_gain

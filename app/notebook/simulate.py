@@ -77,7 +77,7 @@ def simulate(
             models/studies/path_text.py; a curve, such as `onpath.ellipse(...)`; or a file with
             options, such as "@logo.svg fit=0.1 nearest", see `onpath.path_from`. It lies in the
             robot's path plane, [m].
-        law: one of `onpath.laws()`; or a law of one's own: a text in two lines, such as
+        law: one of `onpath.laws()`; or a custom law: a text in two lines, such as
             "across = -K1*xi - K2*dxi; along = -K5*(dtheta - speed)"; an object with `command(view)`
             in CasADi, see `onpath.View`, a class of such objects, or a function that is called in
             every control interval, and once before the run, to check what it returns, see
@@ -136,7 +136,7 @@ def simulate(
     >>> runs = [onpath.simulate(law=law, hold=(1, 2), duration=3) for law in laws]
     >>> figure = runs[0].plot(*runs[1:])
 
-    A law of one's own, which pulls twice as hard as path following:
+    A custom law, which pulls twice as hard as path following:
 
     >>> run = onpath.simulate(law="across = -2*K1*xi - K2*dxi; along = 9*(5 - dtheta)", duration=1)
     >>> bool(abs(run.theta_rate[-1] - 5) < 0.1)

@@ -159,7 +159,7 @@ class PlantLink:
         self._report = replace(self._report, law=law)
 
     def report(self) -> PlantReport:
-        """What has happened; the rows and `late` begin anew."""
+        """What has happened; the rows and `late` are reset."""
         acting, last = self._acting, self._last
         told = replace(
             self._report,

@@ -30,7 +30,7 @@ Node = TypeVar("Node", RobotLabels, TubeNodes, PlaneNodes, ErrorNodes, MassNodes
 
 
 class Drawn(Generic[Node]):
-    """Nodes of one kind, drawn anew when their key changes.
+    """Nodes of one kind, redrawn when their key changes.
 
     Attributes:
         nodes: the drawn ones, or None.

@@ -148,7 +148,7 @@ class ClassWall(LabDisplay):
     @override
     def show(self, lab: Lab, frame: int, stride: float) -> None:
         if any(each.visit.stream.opened != each.opened for each in self._walls):
-            self._source.forget()  # all are told anew what one of them does not know
+            self._source.forget()  # what one of them does not know is sent to all again
         self._source.note(lab.simulation)
         if self._whole is None or not self.is_turn(lab, frame, stride):
             return

@@ -323,7 +323,7 @@ class LabRegistry:
         return len(self._entries)
 
     def free_memory(self) -> None:
-        """Drop labs that were left a while ago and not used; delete the histories of the others.
+        """Drop labs that have been unused for long; delete the histories of the rest.
 
         A lab that was reopened and not used since is in the database. A history stays while a past
         instant is shown. Do not call this on the simulation thread, for which it waits.

@@ -387,11 +387,11 @@ class LabServer:
         if self._keeper is not None:
             for code in self.registry.held():
                 if not self._keeper.flush(code):
-                    break  # each of the others would wait just as long, in vain
+                    break  # the others would wait as long, and in vain
         self.visits.send_away(visits)
 
     def _reopen(self, visit: Visit, entry: RegisteredLab) -> None:
-        """Show a page another lab, or its own anew."""
+        """Show a page another lab, or its own once more."""
         visit.sight.leave()
         self.thread.call(lambda: None)  # until the frame that still showed it has ended
         visit.show_nothing()

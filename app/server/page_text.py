@@ -98,7 +98,7 @@ class PageText:
         self._thread.close()
 
     def _speak(self, words: Words) -> None:
-        """Begin anew in a language."""
+        """Start over in a language."""
         self.words = words
         self._captions = Captions(words)
         self.narration = Narration(words, self.preferences, self._captions, self.first_minute)

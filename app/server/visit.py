@@ -95,7 +95,7 @@ class Visit:
         for act in reversed(acts):
             try:
                 act()
-            except Exception as error:  # the others are released all the same
+            except Exception as error:  # the rest is released all the same
                 log_error(error)
 
     def show(self, lab: ScheduledLab, feed: LabFeed) -> None:

@@ -179,7 +179,7 @@ class _Lab:
     """What the fields of a lab depend on.
 
     Attributes:
-        path: the name of a path of one's own; empty if it is a preset.
+        path: the name of a custom path; empty if it is a preset.
         points: number of its control points.
         plant: laws of a plant elsewhere in the place of a robot; (): there is none.
     """

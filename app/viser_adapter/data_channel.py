@@ -96,7 +96,7 @@ class PageStream:
 
     def _write_to(self, connection: SecureConnection, messages: Sequence[Message]) -> None:
         if connection is not self._connection or connection.protocol.state is not State.OPEN:
-            return  # its successor is told everything anew
+            return  # its successor is told everything
         if connection.transport.get_write_buffer_size() > MOST_UNSENT:
             connection.loop.call_later(AGAIN, self._write_to, connection, messages)
             return

@@ -1,4 +1,4 @@
-"""A law of one's own against path following: the same trials for both, and a page with the runs."""
+"""A custom law against path following: the same trials for both, and a page with the runs."""
 
 from own_law import SlidingMode
 

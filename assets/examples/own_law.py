@@ -1,4 +1,4 @@
-"""A law of one's own, compiled like all others; in the lab: onpath --law own_law.py:SlidingMode"""
+"""A custom law, compiled like all others; in the lab: onpath --law own_law.py:SlidingMode"""
 
 import casadi as ca
 

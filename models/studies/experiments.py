@@ -375,7 +375,7 @@ def run(
 
 
 def check_own_law(experiment: Experiment, law: str) -> None:
-    """Check that the code of a law of one's own gives a command at the start of an experiment.
+    """Check that the code of a custom law gives a command at the start of an experiment.
 
     Raises:
         CodedError: it fails, or it returns no command, with file and line.

@@ -43,7 +43,7 @@ def top(until: float = 20.0, **settings: Any) -> Motion:
 
 @cache
 def typed(across: str) -> Motion:
-    """A robot with a law of one's own, sent to the top of the circle."""
+    """A robot with a custom law, sent to the top of the circle."""
     return play(20.0, [], left=own(across), **AT_TOP)["tracker"]
 
 

@@ -39,5 +39,5 @@ def restore(simulation: Simulation, setup: Setup) -> None:
         kept = settings_kept("code", of_robot=True)
         simulation.set(**{name: getattr(robot.own, name) for name in kept})
     for name in set(simulation.earlier) - set(wanted):
-        del simulation.earlier[name]  # it begins anew when it is chosen
+        del simulation.earlier[name]  # it restarts when it is chosen
     simulation.reset(laws)

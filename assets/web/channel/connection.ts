@@ -206,7 +206,7 @@ export class PictureLink {
         this.again = 0
     }
 
-    /** Have viser's page made anew. */
+    /** Have viser's page built again. */
     renew(): void {
         if (this.state === "open") this.open(performance.now())
     }

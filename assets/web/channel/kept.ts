@@ -18,7 +18,7 @@ export function kept(key: string): string {
     try {
         return (localStorage.getItem(entryOf(key)) ?? "").slice(0, LONGEST)
     } catch {
-        return "" // a browser without storage begins anew each time
+        return "" // a browser without storage starts over each time
     }
 }
 

@@ -54,7 +54,7 @@ export interface Action {
     run?: boolean | null
     /** fit the controller's model to the measured motion. */
     identify?: boolean | null
-    /** put both robots to another start, and begin anew there. */
+    /** put both robots to another start, and restart there. */
     start?: RunStart | null
     /** how fast time goes from now on, compared with the student's own tempo; 0.25 is slow motion. */
     rate?: number | null
@@ -309,7 +309,7 @@ export interface IdentifyMyself {
     typed: string
 }
 
-/** Give a word of one's own, which links two tests, or take it back with an empty one.
+/** Give a word of the student's own, which links two tests, or take it back with an empty one.
  *
  * Answered by `SeatAnswer`. */
 export interface LinkWord {
@@ -980,7 +980,7 @@ export interface ClassMessage {
     asks: string
     /** what the member has typed there. */
     identification: string
-    /** whether the member has given a word of one's own; "shared": so that another one has. */
+    /** whether the member has given the word that links two tests; "shared": so that another one has. */
     linked: "" | "own" | "shared"
 }
 

@@ -45,7 +45,7 @@ export class Sheet {
     // The browser then draws in memory: without a graphics card, the other points costs ten times as much.
     private readonly ink = this.canvas.getContext("2d", { willReadFrequently: true })
 
-    /** `changed`: everything is to be drawn anew; `grows`: for a projector it is drawn larger, see `enlarge`. */
+    /** `changed`: everything is to be redrawn; `grows`: for a projector it is drawn larger, see `enlarge`. */
     constructor(readonly changed: () => void, private readonly grows = false) {
         const observer = new ResizeObserver(entries => {
             this.box = entries[entries.length - 1]!.contentRect

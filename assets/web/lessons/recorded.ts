@@ -40,7 +40,7 @@ export class Recorded extends Simulation {
         this.setUp()
     }
 
-    /** Begin anew as another robot than before, with the other settings as they are. */
+    /** Start over as another robot, with the other settings as they are. */
     goOnFrom(before: Recorded, name: string, value: Setting): void {
         this.settings = { ...before.settings, [name]: value }
         this.changes.values = { ...before.values, [name]: value }
@@ -214,7 +214,7 @@ export class Recorded extends Simulation {
         return { times: [...this.times, this.time], tracker: of("tracker"), follower: of("follower") }
     }
 
-    /** Begin anew, with the settings as they are. */
+    /** Start over, with the settings as they are. */
     private restart(): void {
         this.run++
         this.frame = 0

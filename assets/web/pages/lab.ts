@@ -284,7 +284,7 @@ function showLab(): void {
 }
 
 /** Whether the page is dark, as the system or its user wants. The page is at once; the lab is told for the robots'
- * picture, which is made anew, as soon as nothing is dragged there. */
+ * picture, which is rebuilt, as soon as nothing is dragged there. */
 class Scheme {
     dark = false
     private told = false

@@ -50,7 +50,7 @@ export class ClassSheet {
     /** Follow the lab's place; what is half typed stays. */
     show(seat: ClassMessage): void {
         const { texts, teaches, sheet, refusal } = this
-        if (this.acts) this.acts.disabled = false // it is told anew with each connection
+        if (this.acts) this.acts.disabled = false // it is sent again with each connection
         const shown = JSON.stringify([seat, teaches])
         if (shown === this.shown) return
         this.shown = shown

@@ -39,7 +39,7 @@ export class Strip {
     private first = 0 // of the axis, while one looks back
     private readonly times: number[] = []
     private readonly kinds: (Span["kind"] | null)[] = []
-    private forgets = false // whether the curves begin anew
+    private forgets = false // whether the curves start over
     private dragged: { pointer: number; x: number } | null = null
 
     /** `kept`: the name under which the browser keeps the rows that a user has chosen; `log`: what the menu does with the log of an arm. */

@@ -271,7 +271,7 @@ class Law:
             foreseen of them by the zero dynamics.
         small_errors: whether it is meant for errors that are small against the radius of curvature.
         always_integrates: whether it uses the integral even if K3 = 0.
-        origin: file and line of a law of one's own, see `python_law`; None for others. A number of
+        origin: file and line of a custom law, see `python_law`; None for others. A number of
             its command that is not finite stops the run, and the message names them.
         called: makes, for each run, the function that is called between ticks and whose results are
             the law's memory; None for a law that is compiled.

@@ -1,4 +1,4 @@
-"""A digest of what a law of one's own is made of, which is the same in another process."""
+"""A digest of what a custom law is made of, which is the same in another process."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Laws of one's own in Python: an object with `command(view)`, or a function that is called."""
+"""Custom laws in Python: an object with `command(view)`, or a function that is called."""
 
 from __future__ import annotations
 
@@ -272,4 +272,4 @@ def _title(name: str) -> str:
 
 def _first_line(given: Any) -> str:
     doc = given.__doc__ if isinstance(given.__doc__, str) else ""
-    return (getdoc(given) or "").splitlines()[0] if doc.strip() else "A law of one's own."
+    return (getdoc(given) or "").splitlines()[0] if doc.strip() else "A custom law."

@@ -66,7 +66,7 @@ def law_named(name: str) -> Law:
 
 
 def add_law(law: Law, name: str = "") -> Law:
-    """Add a law of one's own, which its name then finds; a second law of a name gets a number.
+    """Add a custom law, which its name then finds; a second law of a name gets a number.
 
     In a lab, call it before the server listens: pages expect that the laws stay the same.
 

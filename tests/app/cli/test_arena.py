@@ -1,4 +1,4 @@
-"""`onpath arena`: a page, a CSV and figures, with laws of one's own, also if it is interrupted."""
+"""`onpath arena`: a page, a CSV and figures, with custom laws, also if it is interrupted."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A law of one's own on the command line and in Python."""
+"""A custom law on the command line and in Python."""
 
 from __future__ import annotations
 

@@ -40,7 +40,7 @@ ARM: dict[str, Any] = {"robot": "two_link_arm", "path": "circle"}
 
 
 class Sliding:
-    """A law of one's own in CasADi, with a memory."""
+    """A custom law in CasADi, with a memory."""
 
     memory = (("kept", 2),)
 

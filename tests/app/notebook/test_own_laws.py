@@ -1,4 +1,4 @@
-"""Laws of one's own in Python do what other laws do, and what is wrong with one is its own."""
+"""Custom laws in Python do what other laws do, and what is wrong with one is its own."""
 
 from __future__ import annotations
 

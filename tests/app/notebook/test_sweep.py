@@ -235,7 +235,7 @@ def _misses(_: int) -> tuple[int, int]:
 
 @pytest.fixture
 def study(tmp_path: Path) -> dict[str, Any]:
-    """Laws and a robot of one's own; a law ends the process in which it is first called."""
+    """Custom laws and a custom robot; a law ends the process in which it is first called."""
     (tmp_path / "arm.urdf").write_text(urdf("arm", PLANAR), "utf-8")
     (tmp_path / "law.py").write_text(
         "def stiff(now):\n    across = -900 * now.xi[0] - 60 * now.xi_rate[0]\n"
