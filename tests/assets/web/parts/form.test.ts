@@ -125,9 +125,10 @@ test("only a drawn button stands among the pictures of a choice, and one of word
         name: "path", kind: "choice", label: "Path", default: "circle",
         options: [{ value: "circle", label: "Circle", picture: "c.svg" }, { value: "line", label: "Line", picture: "l.svg" }],
     }
-    const fields = [path, ...["draw", "undo", "controls"].map((name): FormField => ({
-        name, kind: "button", label: name.toUpperCase(), ...(name === "controls" ? {} : { icon: name as "draw" | "undo" }),
-    }))]
+    const fields = [path, ...["draw", "undo", "controls"].map((name): FormField => {
+        const button = { name, kind: "button" as const, label: name.toUpperCase() }
+        return name === "controls" ? button : Object.assign(button, { icon: name as "draw" | "undo" })
+    })]
     const { form } = opened({ is: "form", place: "step", groups: [{ name: "step", title: "Here", fields }] })
     const among = [...form.element.querySelectorAll(".pictures button.do")].map(each => each.textContent)
     const below = [...form.element.querySelectorAll("button.do")].filter(each => !each.closest(".pictures"))
