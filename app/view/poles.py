@@ -50,10 +50,11 @@ def _lines(found: Mapping[str, tuple[Channel, ...] | Message], words: Words) -> 
             yield prefix + words.sentence(channels)
             continue
         for channel in channels:
-            poles = words("gains.poles", poles=channel.pole_words())
+            listed = words.written(channel.pole_words().replace("-", "−"))
+            poles = words("gains.poles", poles=listed)
             if channel.at is not None:
                 place = f"{np.degrees(channel.at) % 360:.0f}"
-                poles = words("gains.poles_at", poles=channel.pole_words(), place=place)
+                poles = words("gains.poles_at", poles=listed, place=place)
             warns = "" if channel.stable or channel.message else WARNS
             name = words(f"gains.{channel.name}")
             yield f"{warns}{prefix}{name}: {words.sentence(channel.behaviour())}; {poles}"

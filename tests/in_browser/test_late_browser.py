@@ -101,6 +101,9 @@ def test_the_lab_is_there_and_obeys_before_the_script_of_its_picture_has_come(
         page.wait_for_function("onpathLab.state.held")
         expect(page.get_by_role("button", name="Draw")).to_be_visible()
         assert page.locator("canvas[data-engine]").count() == 0
+        stage, strip = (page.locator(name).bounding_box() for name in ("#op-stage", "#op-strip"))
+        assert stage and strip and stage["width"] > 200
+        assert stage["height"] > 200 and abs(stage["y"] + stage["height"] - strip["y"]) < 1
         may_come.set()
         page.wait_for_selector("canvas[data-engine]", state="attached")
     finally:

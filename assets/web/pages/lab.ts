@@ -46,6 +46,7 @@ class Face {
     private readonly numbers: HTMLElement[]
     private readonly readings: HTMLElement[]
     private readonly stage: OverStage
+    private readonly room = made("div", "op-room") // that the robots' picture has, or will have
     private readonly element: HTMLElement
     private readonly undo = made("button", "undo")
     private readonly transport: Transport
@@ -88,7 +89,7 @@ class Face {
         this.element.ariaLabel = phrase(texts, "chart.title")
         this.voice = new Voice(engine, texts, () => UPRIGHT.matches, signal)
         this.shell = new Shell(engine, texts, signal, reopen)
-        document.body.prepend(this.stage.element, this.voice.element, this.column.element, this.element, ...this.shell.elements,
+        document.body.prepend(this.room, this.stage.element, this.voice.element, this.column.element, this.element, ...this.shell.elements,
             new Downloads(engine.files, texts, signal).element)
         if (engine.lab!.plant) new Plant(texts, engine, signal)
         engine.askForm()
@@ -163,9 +164,7 @@ class Face {
     end(): string {
         this.ended.abort() // first: a box that is removed while somebody types in it is not left
         const open = this.shell.end()
-        this.column.element.remove()
-        this.stage.element.remove()
-        this.element.remove()
+        for (const element of [this.column.element, this.room, this.stage.element, this.element]) element.remove()
         document.documentElement.classList.remove("op-large", "op-lesson", "op-waits", "op-plays")
         return open
     }
@@ -173,7 +172,7 @@ class Face {
     /** Follow viser's canvas, which changes its size, or is replaced. Not to be called by a ResizeObserver, or a lens misses its own new size. */
     place(): void {
         const canvas = webgl.works ? document.querySelector<HTMLElement>("canvas[data-engine]") : null
-        const { left, top, width, height } = (canvas ?? document.getElementById("root"))?.getBoundingClientRect() ?? new DOMRect()
+        const { left, top, width, height } = (canvas ?? this.room).getBoundingClientRect()
         if (height > 0) this.engine.shape = width / height
         if (canvas && (width !== this.width || height !== this.height)) {
             clearTimeout(this.resizing)
