@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import partial
 from typing import Any
+from urllib.request import urlopen
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from msgspec.json import encode
 
 from onpath.app.classroom.classroom import MOST_ASKING, NUMBER_LASTS, Classroom
 from onpath.app.server.lab_server import LabServer
@@ -17,6 +19,7 @@ from tests.support import waiting
 from tests.support.own_socket import OwnSocket
 from tests.support.student import Student
 
+MOST_BYTES = 150_000  # of the page, and of what it is told until it can be used
 wait_for = partial(waiting.wait_for, seconds=60.0)
 MOVES = st.one_of(
     st.just(("ask",)),
@@ -97,6 +100,8 @@ def test_a_phone_is_let_in_from_a_teachers_page_and_thrown_out_again(
         press(teacher, f"class.let_in{number}")
         teacher.read(lambda: "class.freeze" in buttons(remote))
         assert last(remote, "remote")["number"] == "" and last(remote, "store")["value"]
+        page = urlopen(f"http://{address(server, room).removeprefix('ws://')}remote").read()
+        assert len(page) + sum(len(encode(each)) for each in list(remote.told)) <= MOST_BYTES
         remote.tell(buttons(remote)["class.freeze"])
         wait_for(lambda: room.orders.frozen)
         remote.tell(wait_for(lambda: buttons(remote).get("class.thaw")))

@@ -100,3 +100,36 @@ def test_an_answer_is_sent_when_it_is_stored_and_not_before(
     do(again, ANSWER)  # the browser did not hear of it
     assert again.lessons.progress == lab.lessons.progress
     keeper.close()
+
+
+@pytest.mark.parametrize("killed", ["on the way", "taken", "stored", "told"])
+def test_wherever_the_process_is_killed_a_vote_counts_once(
+    tmp_path: Path, course: Course, killed: str
+) -> None:
+    records, after = (Slow(file_url(tmp_path / "labs.db")) for _ in range(2))
+    after.goes_on.set()
+    lab, again = (Lab(loop_cache(), FIVE_BAR, course) for _ in range(2))
+    keeper, other = WriteBehind(records, interval=LONG), WriteBehind(after, interval=LONG)
+    lab.watch = StateObserver(CODE, keeper, lab)
+    do(lab, TakeStep(LESSON, CHOICE))
+    if killed != "on the way":
+        do(lab, ANSWER)
+    if killed in ("stored", "told"):
+        records.goes_on.set()
+        until_sent(lab, keeper)
+    stored = after.load(CODE)  # all that is left
+    assert (stored is None) == (killed in ("on the way", "taken"))
+    if stored is not None:
+        put_back(again, stored)
+    again.watch = StateObserver(CODE, other, again)
+    do(again, TakeStep(LESSON, CHOICE))
+    if killed != "told":
+        do(again, ANSWER)  # its browser has kept it
+    until_sent(again, other)
+    left = after.load(CODE)
+    assert left is not None
+    assert [each["key"] for each in left["lessons"]["notes"][LESSON]["given"]] == ["k1"]
+    records.away = 9  # nothing comes of the process that was killed
+    records.goes_on.set()
+    for each in (keeper, other, records, after):
+        each.close()
