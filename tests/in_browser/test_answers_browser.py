@@ -157,7 +157,7 @@ def test_the_board_stays_through_a_commit_and_can_be_drawn_on_when_asked_again(
     page.get_by_text("You were: certain").wait_for()
     expect(board).to_be_visible()
     tab.ask(c.TakeStep(TIMETABLE, 1, again=True))
-    page.get_by_text("Find somebody who answered differently").wait_for()
+    page.get_by_text("Find somebody who drew another one").wait_for()
     _draw(tab)
     tab.button("Commit to this prediction").click()
     answer = wait_for(tab.lab.lessons.answer)
@@ -177,7 +177,7 @@ def test_boards_that_are_replaced_are_forgotten(browser: Browser, server: LabSer
         tab.ask(c.Predict(times=(0.0, 8.0), values=(0.0, 40.0), sure="certain"))
         tab.page.get_by_text("You were: certain").wait_for()
         tab.ask(c.TakeStep(TIMETABLE, 1, again=True))
-        tab.page.get_by_text("Find somebody who answered differently").wait_for()
+        tab.page.get_by_text("Find somebody who drew another one").wait_for()
     wait_for(lambda: _canvases(tab) <= before + 1)
     context.close()
 

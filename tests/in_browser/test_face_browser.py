@@ -79,7 +79,7 @@ def test_a_newcomer_is_invited_once(browser: Browser, server: LabServer) -> None
     expect(invitation).to_be_hidden()
     expect(tab.button("Let both go")).not_to_have_class(re.compile("invited"))
     expect(spoken).to_contain_text(re.compile(r"Held back\. Tracker: torn off: up to \d+ mm"))
-    expect(spoken).to_contain_text(re.compile(r"Follower: waits: up to \d mm"))
+    expect(spoken).to_contain_text(re.compile(r"Follower: waits: up to \d(\.\d)? mm"))
     expect(tab.button("Let both go")).to_have_class(re.compile("invited"))
     tab.button("Let both go").click()
     wait_for(lambda: not tab.simulation.forces.held)

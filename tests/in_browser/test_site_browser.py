@@ -33,7 +33,7 @@ PAPER = {"light": "#ffffff", "dark": "#25262b"}
 BOARD = ".step.open canvas.board"
 INKED = "name => document.querySelector(name).getContext('2d').strokeStyle"
 """The colour of the rim of the letters on a canvas, which are drawn last."""
-TOUCHED = ".step.open :is(button, summary, select, .options label):visible, .pager button, header a"
+TOUCHED = ".step.open :is(button, summary, select, .options label):visible, header a"
 SMALL = """all => all.filter(each => each.getBoundingClientRect().height < 44)
     .map(each => each.textContent)"""
 CUT = """width => [...document.querySelectorAll("main *")].filter(each => {

@@ -40,7 +40,7 @@ def longest() -> Iterator[tuple[str, int, bool]]:
                 continue
             text = step.watch if sketch is None else sketch.question
             after = any(isinstance(each, Sketch) for each in before.predictions())
-            kind = (sketch is not None, after, bool(versions["de"].scene_at(index).plots))
+            kind = (sketch is not None, after, bool(versions["de"].setup_at(index).plots))
             kinds.setdefault(kind, []).append((len(step.title) + len(text or ""), name, index))
     for (drawn, *_), found in kinds.items():
         _, name, index = max(found)
