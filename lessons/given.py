@@ -1,5 +1,5 @@
 """An answer: one event, as a student's progress, the record of a class, the grade and a learning
-platform's interactions read it. assets/web/core/given_data.ts has the same, made from it."""
+platform's interactions read it. assets/web/core/shared_data.ts has the same, made from it."""
 
 from __future__ import annotations
 

@@ -99,22 +99,22 @@ def _setup(lesson: Lesson, index: int) -> dict[str, Any]:
     """The lab at the beginning of the step."""
     from onpath.models.control.sides import DEFAULT_LAWS
 
-    scene = lesson.scene_at(index)
-    robot, path = scene.robot or lesson.front.robot, scene.path or "circle"
-    laws = {**DEFAULT_LAWS, **scene.laws.named}
+    setup = lesson.setup_at(index)
+    robot, path = setup.robot or lesson.front.robot, setup.path or "circle"
+    laws = {**DEFAULT_LAWS, **setup.laws.named}
     return {
         "robot": robot,
         "path": path,
         "laws": laws,
-        "set": dict(scene.set),
-        "plot": list(scene.plots),
-        **_drawn(scene),
+        "set": dict(setup.set),
+        "plot": list(setup.plots),
+        **_drawn(setup),
     }
 
 
-def _drawn(scene: StepSetup) -> dict[str, Any]:
+def _drawn(setup: StepSetup) -> dict[str, Any]:
     """The start and the drawings, where they differ from a new lab's."""
-    fields = {"start": scene.start, "show": scene.show, "marks": scene.marks}
+    fields = {"start": setup.start, "show": setup.show, "marks": setup.marks}
     plain = {name: msgspec.to_builtins(value) for name, value in fields.items()}
     plain["start"] = {name: value for name, value in plain["start"].items() if value}
     return {name: value for name, value in plain.items() if value}
@@ -209,6 +209,6 @@ def _mentioned(lesson: Lesson, index: int) -> set[str]:
     named = {getattr(block, "quantity", "") for block in asked}
     checked = {getattr(check, "quantity", "") for task in step.tasks() for check in task.check}
     plots = {
-        quantity for plot in lesson.scene_at(index).plots for quantity in PLOTTED.get(plot, (plot,))
+        quantity for plot in lesson.setup_at(index).plots for quantity in PLOTTED.get(plot, (plot,))
     }
     return {*ALWAYS, *named, *checked, *plots}

@@ -13,7 +13,7 @@ import onpath
 from onpath.app.cli.main import run_command
 from onpath.app.exports.standalone.figure_choice import chosen
 from onpath.app.exports.standalone.figure_form import setting_of
-from onpath.app.exports.standalone.setting_places import setting_places
+from onpath.app.exports.standalone.setting_numbers import setting_numbers
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.setups.capture import capture
@@ -98,4 +98,4 @@ def test_it_is_exported_with_sliders_for_its_gains(tmp_path: Path) -> None:
     assert {"boundary", "reach"} <= {*figure.sliders}
     german = setting_of(figure, "reach", Words("de"))
     assert (german.label, german.default) == ("Reach", 3.0)
-    assert setting_places(figure, {}).places["reach"] > 0
+    assert setting_numbers(figure, {}).indices["reach"] > 0

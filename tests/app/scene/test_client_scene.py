@@ -257,7 +257,7 @@ def test_a_step_switches_its_drawings_on_and_the_next_one_off(shown: Shown, cour
             shown.follow(c.GoToStep(index - shown.lab.lessons.index))
             if shown.lab.lessons.index != index:
                 break
-            setup = lesson.scene_at(index)
+            setup = lesson.setup_at(index)
             assert shown.switches == {"zone", *setup.show}
             mouse: Any = shown.scene._scene.mouse
             assert mouse.path_first == ("editor" in setup.controls)

@@ -14,7 +14,7 @@ from onpath.app.lab.commands import SetLanguage, TakeStep
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.take_snapshot import take_motion, take_page_snapshot
 from onpath.app.server.built_in_course import built_in_course
-from onpath.app.server.first_view import FirstView
+from onpath.app.server.first_projection import FirstProjection
 from onpath.app.server.page_context import PageContext
 from onpath.app.server.page_data import PageData
 from onpath.app.server.page_text import PageText
@@ -26,7 +26,7 @@ COURSE = built_in_course()
 LESSON = next(iter(COURSE.lessons))
 TITLES = {each: COURSE.lesson(LESSON, each).steps[0].title for each in ("en", "de")}
 
-VIEW = FirstView(lambda work: work())  # at once
+VIEW = FirstProjection(lambda work: work())  # at once
 
 
 class SlowStream:
@@ -56,7 +56,7 @@ class Page:
         context = PageContext("", COURSE, 0, print, self.text, print, print)
         stream = cast(PageStream, self.stream)
         self.data = PageData(stream, self.lab, context, TabVisibility())
-        self.data._first_view = VIEW
+        self.data._first_projection = VIEW
         self._snapshot = take_page_snapshot(self.lab, 1.0)
 
     def happen(self, event: str) -> None:
