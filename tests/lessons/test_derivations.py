@@ -213,6 +213,29 @@ def inside(of: Symbols) -> list[ca.SX]:
     return [found, -ca.substitute(bending, mark, found) / of["w"]]
 
 
+def pendulum(of: Symbols) -> list[ca.SX]:
+    """The heading's acceleration is linear in that of the pen; the swing by its derivative."""
+    faster, heading = ca.SX.sym("faster"), ca.SX.sym("phi")
+    pen = of["d"] * faster - of["a"] * ca.sin(of["psi"] - heading)
+    found = -ca.substitute(pen, faster, 0) / ca.jacobian(pen, faster)
+    stiffness = ca.substitute(-ca.jacobian(found, heading), heading, of["psi"])
+    centre = ca.substitute(stiffness, ca.vertcat(of["a"], of["d"]), ca.DM([0.2, 0.06]))
+    return [ca.substitute(found, heading, of["phi"]), ca.sqrt(centre)]
+
+
+def drag(of: Symbols) -> list[ca.SX]:
+    """Velocity and acceleration of a point on a circle, and what of them is along n."""
+    time, place = ca.SX.sym("t"), ca.SX.sym("k")
+    rate, heading = of["Omega"], of["Omega"] * time + ca.pi / 2 + of["beta"]
+    pen = of["R"] * turned(rate * time)
+    moved = ca.jacobian(pen, time)
+    pull = ca.jacobian(moved, time) + place * moved
+    left = ca.substitute(ca.dot(pull, turned(heading + ca.pi / 2)), time, 0.3)
+    ahead = ca.substitute(left, of["beta"], 0) - place * of["d"] * rate
+    still = -ca.substitute(ahead, place, 0) / ca.jacobian(ahead, place)
+    return [ca.substitute(left, place, of["k"]), still]
+
+
 def one_joint(of: Symbols) -> list[ca.SX]:
     """The state form of a joint: its equation of motion is linear in the torque."""
     torque = ca.SX.sym("u")
@@ -306,6 +329,8 @@ ORACLES: list[tuple[str, int, Callable[[Symbols], list[ca.SX]]]] = [
     ("05-invariance", 0, peak),
     ("06-exact-cancellation", 0, offset),
     ("07-flexible-link", 0, inside),
+    ("07b-where-the-theorem-decides", 0, pendulum),
+    ("07b-where-the-theorem-decides", 1, drag),
     ("09-read-the-paper", 0, one_joint),
     ("09-read-the-paper", 1, along_motions),
     ("09-read-the-paper", 2, mirrored),

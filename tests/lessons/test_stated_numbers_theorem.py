@@ -8,15 +8,13 @@ import numpy as np
 import pytest
 
 import onpath
-from onpath.lessons.schema import NumberQuestion
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.hovercraft import MASS, PLACES, hovercraft
-from tests.support.built_in import built_in_course
 from tests.support.stated_numbers import assert_stated, numbers, said, shown, text
 
 pytestmark = pytest.mark.thorough
 
-LESSON, NAME = "07b", "07b-where-the-theorem-decides"
+LESSON = "07b"
 D, RADIUS, PACE = PLACES["front"], 0.05, 2.0  # [m], [m], [rad/s]
 
 
@@ -45,14 +43,12 @@ def test_where_the_nose_points_after_some_laps(pen: str, sentence: str) -> None:
     assert (inwards > 0) == (pen == "front")
 
 
-def test_the_frequency_of_the_nose_and_its_known_mistakes() -> None:
-    steps = built_in_course()[0].lesson(NAME, "en").steps
-    asked = [b for step in steps for b in step.blocks if isinstance(b, NumberQuestion)]
-    a = PACE**2 * RADIUS
-    assert abs(asked[0].number - math.sqrt(a / D)) < asked[0].tolerance / 2
-    mistakes = a / D, math.sqrt(PACE * RADIUS / D), math.sqrt(D / a), math.sqrt(a / (1e3 * D))
-    known = [each.number for each in asked[0].wrong]
-    assert known == pytest.approx(mistakes, rel=0.005)
+def test_at_which_drag_the_nose_points_along_the_path() -> None:
+    run = onpath.simulate("hovercraft", "circle", duration=16.0, pen="front", drag=0.83)
+    travel = np.diff(hovercraft("front").endpoint(run.q), axis=0)[-1]
+    nose = np.array([math.cos(run.q[-1, 2]), math.sin(run.q[-1, 2])])
+    assert math.acos(travel @ nose / np.linalg.norm(travel)) < math.radians(1)
+    assert_stated(said(LESSON, "a drag of # N s/m. Try it"), [MASS * RADIUS * PACE / D])
 
 
 def test_from_a_certain_drag_on_the_heading_cannot_keep_up() -> None:
