@@ -139,7 +139,10 @@ def _written_faults(token: Token) -> Iterator[str]:
 
 
 def _pictures(children: Sequence[Token], home: Path) -> Iterator[str]:
-    """Embed the pictures in the text; yields the faults of those that cannot be embedded."""
+    """Embed the pictures in the text; yields the faults of those that cannot be embedded.
+
+    A picture within a sentence is a sign: it is as high as the letters.
+    """
     for image in children:
         if image.type != "image":
             continue
@@ -150,6 +153,8 @@ def _pictures(children: Sequence[Token], home: Path) -> Iterator[str]:
             yield f"picture {source!r}: a number stands in the text, not in what the picture shows"
         try:
             image.attrSet("src", own_picture(source, home))
+            if len(children) > 1:
+                image.attrSet("class", "sign")
         except ValueError as error:
             image.type = "text"
             yield str(error)

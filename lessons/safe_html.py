@@ -44,7 +44,7 @@ ANY_MATHML: Allowed = {
 """Attributes of every element of a formula."""
 OF_ELEMENT: Mapping[str, Allowed] = {
     "a": {"href": LINK, "title": TEXT, "target": re.compile("_blank")},
-    "img": {"src": PICTURE, "alt": TEXT, "title": TEXT},
+    "img": {"src": PICTURE, "alt": TEXT, "title": TEXT, "class": re.compile("sign")},
     "ol": {"start": re.compile(r"\d{1,9}")},
     "th": {"style": ALIGNED},
     "td": {"style": ALIGNED},

@@ -676,7 +676,7 @@ stage-paused = Die Zeit steht still
 stage-past = Rückblick auf { $time } s
 
 invite-hold = Zwei gleiche Roboter folgen einer Bahn. Was geschieht, wenn ihnen etwas im Weg steht? Drücke auf „Beide festhalten“.
-invite-let_go = Den einen reißt seine Uhr von der Bahn; der andere wartet, so lange es dauert. Lass jetzt beide los.
+invite-let_go = Der Ring ◯ des Nachläufers läuft nach der Uhr weiter und reißt ihn von der Bahn. Der Punkt ● des Bahnfolgers wartet mit ihm. Lass jetzt beide los.
 invite-pull = Sei nun selbst das Hindernis: Drücke mit der Maus oder dem Finger auf die Spitze eines Roboters und halte still. Eine Hand wirkt auf beide.
 invite-pulled = Hältst du still, wartet der Bahnfolger an deiner Hand, und den Nachläufer zieht seine Uhr fort. Ziehst du nach außen, verlassen beide die Bahn: Eine solche Hand hält sie nicht auf.
 invite-bend = Verbiege die Bahn: Ziehe an einem ihrer grauen Punkte.

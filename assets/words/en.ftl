@@ -592,7 +592,7 @@ stage-paused = Time stands still
 stage-past = Looking back at { $time } s
 
 invite-hold = Two identical robots follow the same path. What if something stands in their way? Press “Hold both back”.
-invite-let_go = One is torn off the path by its clock; the other waits for as long as it takes. Now let both go.
+invite-let_go = The tracker’s ring ◯ runs on by its clock and tears it off the path. The follower’s dot ● waits with it. Now let both go.
 invite-pull = Now be the obstacle yourself: press on a robot’s tip and keep still, with the mouse or a finger. One hand acts on both.
 invite-pulled = Held still, the follower waits at your hand, and the clock drags the tracker on. Pulled outwards, both leave the path: such a hand does not hold them back.
 invite-bend = Bend the path: drag one of its grey points.

@@ -17,6 +17,20 @@ const LINES = {
 
 export type Icon = keyof typeof LINES
 
+/** What the laws aim at, as on the stage: discs from the largest to the smallest, each with its radius and what it is of. */
+const SIGNS: Record<string, readonly (readonly [number, string])[]> = {
+    "◯": [[12, "left"], [9, "dark-left"], [6.5, "white"]],
+    "●": [[12, "right"], [6, "white"], [4.4, "dark-right"]],
+}
+
+/** A text with its signs drawn. */
+export function withSigns(text: string): (Node | string)[] {
+    return text.split(/([◯●])/).map(part => {
+        const discs = SIGNS[part]?.map(([r, name]) => svg("circle", { cx: 12, cy: 12, r, class: name }))
+        return discs ? svg("svg", { viewBox: "0 0 24 24", class: "op-sign", "aria-hidden": "true" }, ...discs) : part
+    })
+}
+
 export function icon(name: Icon): SVGSVGElement {
     return svg("svg", { viewBox: "0 0 24 24", class: "op-icon", "aria-hidden": "true" }, svg("path", { d: LINES[name] }))
 }

@@ -120,7 +120,7 @@ export class View {
     private marker(ink: CanvasRenderingContext2D): void {
         const { dark } = this
         const { aim } = this.side.does()
-        const [rim, radius, ...colours] = aim === "theta_ref" ? [9, 6, dark, tones().paper] as const : [7, 5, tones().paper, dark] as const
+        const [rim, radius, ...colours] = aim === "theta_ref" ? [10, 7, dark, tones().paper] as const : [6.5, 4.75, tones().paper, dark] as const
         this.disc(ink, this.side.aim(), rim, colours[0])
         this.disc(ink, this.side.aim(), radius, colours[1])
     }

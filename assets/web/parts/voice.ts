@@ -4,6 +4,7 @@
 import { made, tell } from "../core/dom"
 import { shown } from "../core/engine"
 import { phrase, withoutNumbers, type Texts } from "../core/words"
+import { withSigns } from "./icons"
 import type { ServerEngine } from "../channel/channel"
 import type { Command, StateMessage } from "../channel/messages"
 
@@ -170,7 +171,7 @@ export class Voice {
         this.returns = this.invitation.contains(activeElement) || (this.returns && activeElement === document.body)
         this.invitation.hidden = this.skipped || invitation === ""
         if (this.invitation.hidden) return
-        tell(this.invited, phrase(this.texts, `invite.${invitation}`))
+        this.invited.replaceChildren(...withSigns(phrase(this.texts, `invite.${invitation}`)))
         this.act.hidden = !this.lab.said.act
         if (!this.act.hidden) tell(this.act, phrase(this.texts, `invite.${invitation}_button`))
         if (this.returns) (this.act.hidden ? this.invited : this.act).focus()

@@ -12,6 +12,7 @@ from functools import lru_cache, partial
 from importlib.util import module_from_spec, spec_from_file_location
 from inspect import getdoc
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import cloudpickle
@@ -165,28 +166,30 @@ def law_in(text: str) -> Law:
     path = Path(found["file"]).resolve()
     if not path.is_file():
         raise CodedError("error.law_no_file", file=found["file"])
-    state = path.stat()
-    return _law_in(path, found["name"], (state.st_mtime_ns, state.st_size))
+    state, name = path.stat(), found["name"]
+    try:
+        module = _module_of(path, (state.st_mtime_ns, state.st_size))
+    except (Exception, SystemExit) as error:
+        raise error_in(name, error, str(path)) from error
+    if name not in vars(module):
+        own = [each for each, value in vars(module).items() if _is_of(value, module.__name__)]
+        raise unknown_name(name, own, f"law in {path.name}")
+    law = python_law(vars(module)[name])
+    return dataclasses.replace(law, source=path.name) if not law.source else law
 
 
 @lru_cache(maxsize=64)
-def _law_in(path: Path, name: str, _state: tuple[int, int]) -> Law:
+def _module_of(path: Path, _state: tuple[int, int]) -> ModuleType:
+    """A file that has been run, once for all its laws."""
     spec = spec_from_file_location(f"onpath_law_{path.stem}", path)
     assert spec is not None and spec.loader is not None
     module = module_from_spec(spec)
     sys.modules[module.__name__] = module  # dataclasses look there
     if str(path.parent) not in sys.path:
         sys.path.append(str(path.parent))  # modules beside it, as for a script
-    try:
-        exec(compile(path.read_bytes(), str(path), "exec"), vars(module))
-    except (Exception, SystemExit) as error:
-        raise error_in(name, error, str(path)) from error
+    exec(compile(path.read_bytes(), str(path), "exec"), vars(module))
     cloudpickle.register_pickle_by_value(module)  # another computer does not have the file
-    if name not in vars(module):
-        own = [each for each, value in vars(module).items() if _is_of(value, module.__name__)]
-        raise unknown_name(name, own, f"law in {path.name}")
-    law = python_law(vars(module)[name])
-    return dataclasses.replace(law, source=path.name) if not law.source else law
+    return module
 
 
 def _is_of(value: Any, module: str) -> bool:

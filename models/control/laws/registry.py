@@ -84,7 +84,8 @@ def add_law(law: Law, name: str = "") -> Law:
     if base in _FOUND or is_text(base):
         raise CodedError("error.law_same_name", law=base)
     law = replace(law, name=name or base)
-    while not name and _ADDED.get(law.name, law) != law:
+    # The source tells no laws apart: one whose file uses it itself is added without it at first.
+    while not name and replace(_ADDED.get(law.name, law), source=law.source) != law:
         number += 1
         law = replace(law, name=f"{base}_{number}")
     versions = {base, *_versions(base)}

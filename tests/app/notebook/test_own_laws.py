@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import random
+import re
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -24,6 +25,7 @@ from onpath.app.server.new_lab import new_lab
 from onpath.models.control.laws.law import ControlAction, View, own_gain
 from onpath.models.control.laws.path_following import followed, tangential
 from onpath.models.control.laws.python_law import Now
+from onpath.models.control.laws.registry import law_named
 from onpath.models.systems.catalogue import ROBOTS
 from tests.support.checkout import ROOT
 
@@ -276,6 +278,17 @@ def test_a_file_is_read_again_after_a_change(tmp_path: Path) -> None:
     assert law_given(f"{file}:mine") == law_given(f"{file}:mine") == "mine"
     file.write_text("def mine(now):\n    return 10 - now.theta_rate, 0\n")
     assert law_given(f"{file}:mine") == "mine_2"
+
+
+def test_laws_of_a_file_that_runs_them_itself_keep_their_names(tmp_path: Path) -> None:
+    file = tmp_path / "used_here.py"
+    readme = (ROOT / "README.md").read_text("utf-8")
+    codes = re.findall(r"```python\n(.*?)```", readme, re.S)
+    [code] = [each for each in codes if "class SlidingMode" in each]
+    file.write_text(code.replace("SlidingMode", "Sliding").replace("plain", "in_intervals"))
+    for name in ("Sliding", "in_intervals", "Sliding"):
+        assert law_given(f"{file}:{name}") == name
+        assert law_named(name).source == file.name
 
 
 @pytest.mark.parametrize(
