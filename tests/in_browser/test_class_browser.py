@@ -14,7 +14,7 @@ pytest.importorskip("playwright")
 from playwright.sync_api import Browser, FloatRect, Locator, Page
 
 from onpath.app.classroom.classroom import Classroom, Display
-from onpath.app.classroom.results import prediction_at
+from onpath.app.classroom.results import asked_at, prediction_at
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.loops.loop_cache import LoopCache
@@ -293,6 +293,33 @@ HIDDEN = """box => [...box.querySelectorAll("p:first-child, div:has(> b)")].filt
     const {left, top, bottom} = each.getBoundingClientRect()
     return ![top + 3, bottom - 3].every(y => box.contains(document.elementFromPoint(left + 5, y)))
 }).map(each => each.textContent)"""  # a question and its options, from end to end
+
+
+FIT = """([told, robots]) => {
+    const box = name => document.querySelector(name).getBoundingClientRect()
+    const asked = box(".asked"), {width, height} = box(".robots")
+    if (!document.querySelector(".asked").textContent.includes(told)) return false
+    const isIn = ({right, bottom}) => right <= asked.right + 1 && bottom <= asked.bottom + 1
+    const all = [...document.querySelectorAll(".asked *")].map(each => each.getBoundingClientRect())
+    return all.every(isIn) && height >= robots * innerHeight && width >= robots * innerWidth
+}"""
+
+
+def test_a_wall_shows_all_of_a_long_answer_and_large_robots(tabs: Class, browser: Browser) -> None:
+    port, course = tabs.teacher.server.server.get_port(), tabs.teacher.lab.lessons.course
+    page = browser.new_page()
+    page.goto(f"http://127.0.0.1:{port}{class_address(tabs.room.code)}wall")
+    page.locator(".join svg").wait_for()
+    last = len(course.lesson(LESSON, "en").steps) - 1
+    quiz = next(at for at in range(last, 0, -1) if asked_at(course.lesson(LESSON, "en"), at))
+    cases = [(LESSON, CHOICE, "A ", 0.3), (LESSON, quiz, "A ", 0.3)]
+    cases += [(test, 1, "Form B", 0.0) for test in course.tests]
+    for lesson, step, told, robots in cases:
+        tabs.room.show(Display(lesson, step, shown=True))
+        for width, height in ((1280, 720), *PROJECTORS):
+            page.set_viewport_size({"width": width, "height": height})
+            page.wait_for_function(FIT, arg=[told, robots])
+    page.close()
 
 
 @pytest.mark.thorough
