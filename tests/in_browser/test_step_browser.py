@@ -206,9 +206,12 @@ def test_a_task_is_seen_at_once_with_what_it_sets(tab: Tab) -> None:
     tab.page.wait_for_function("onpathLab.lab.language === 'en'")
 
 
-@pytest.mark.parametrize("tab", SIZES[1:], indirect=True, ids=["telephone"])
-def test_what_is_asked_or_to_be_watched_is_read_whole_on_a_telephone(tab: Tab) -> None:
+def test_what_is_asked_or_to_be_watched_is_read_whole_on_a_telephone(
+    browser: Browser, server: LabServer
+) -> None:
     """In German, whose words are longer; with the main button, before anything is pressed."""
+    context = browser.new_context(has_touch=True)
+    tab = Tab(server, context, draws=False)
     tab.ask(c.SetLanguage("de"), c.SetRunning(False))
     tab.page.wait_for_function("onpathLab.lab.language === 'de'")
     for name, index, drawn in LONGEST:
@@ -223,8 +226,8 @@ def test_what_is_asked_or_to_be_watched_is_read_whole_on_a_telephone(tab: Tab) -
             part = ".asked.sketch .question" if drawn else ".op-watch"
             cut = tab.page.wait_for_function(CUT, arg=[index, part]).json_value()
             assert max(cut) <= 0, (name, index, size, cut)
-    tab.ask(c.SetLanguage("en"))
-    tab.page.wait_for_function("onpathLab.lab.language === 'en'")
+    assert tab.errors == []
+    context.close()
 
 
 def test_a_step_s_controls_are_in_its_card_and_the_robots_keep_their_room(shared: Tab) -> None:
