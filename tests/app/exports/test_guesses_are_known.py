@@ -122,9 +122,7 @@ def test_a_page_marks_plots_fields_and_the_robot(entry: RobotEntry, language: st
     seen = Projection(height=1, cameras=np.zeros((0, 3, 3)), drawn=True, above=np.zeros(2), arrow=1)
     state = state_message(snapshot, words, {}, Said(), seen)
     marked = {
-        row["name"]: row["label"]
-        for row in state.rows
-        if words("guess.mark", kinds="") in row["label"]
+        row.name: row.label for row in state.rows if words("guess.mark", kinds="") in row.label
     }
     assert words("guess.mass") in marked["torques"] and words("guess.tip") in marked["distance"]
     fields = {f.name: f for g in form_of(snapshot, None, words).groups for f in g.fields}
