@@ -105,7 +105,9 @@ def assert_shown(pupil: Pupil, step: Step) -> None:
         return
     wanted = pupil.lesson.setup_at(pupil.index).plots
     is_level_set = tab.simulation.parameters.across == LEVEL_SET
-    rows = row_data(tab.simulation.sample_layout.fields, is_level_set, ENGLISH)
+    motors = tab.simulation.entry.make(tab.simulation.parameters).system.motor_units
+    fields = tab.simulation.sample_layout.fields
+    rows = row_data(fields, is_level_set, ENGLISH, motors=motors)
     named = {row.name: f"{row.label} [{row.unit}]" for row in rows}
     named |= {"phase": ENGLISH("plot.phase_name")}
     for plot in wanted:
