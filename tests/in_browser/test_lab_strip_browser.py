@@ -290,7 +290,7 @@ def test_an_invitation_covers_neither_paths_nor_the_strip(
         invitation = tab.page.locator("#op-invitation")
         expect(invitation).to_be_visible()
         tab.ask(c.Hold(True))
-        expect(invitation).to_contain_text("torn off")
+        expect(invitation).to_contain_text("tears it off")
 
         def is_free(width: int) -> bool:
             box, boxes = invitation.bounding_box(), tab.page.evaluate(BOXES)
