@@ -84,7 +84,7 @@ class PageStream:
                     await connection.send(answer, text=True)
         finally:
             if self._connection is connection:
-                self._connection = None
+                self._connection, self.is_busy = None, False
                 self._left()
 
     def write(self, messages: Sequence[Message]) -> None:
@@ -108,7 +108,7 @@ class PageStream:
     def end(self) -> None:
         """Begin to close the connection, if there is one; its page connects again."""
         self.receive = ignored  # its owner refers to this stream
-        connection, self._connection = self._connection, None
+        connection, self._connection, self.is_busy = self._connection, None, False
         if connection is not None:
             closing = connection.close(CloseCode.SERVICE_RESTART, "the lab has moved")
             self._ending = connection.loop.create_task(closing)
