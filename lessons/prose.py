@@ -141,9 +141,9 @@ def _written_faults(token: Token) -> Iterator[str]:
 def _pictures(children: Sequence[Token], home: Path) -> Iterator[str]:
     """Embed the pictures in the text; yields the faults of those that cannot be embedded.
 
-    A picture within a sentence is a sign: it is as high as the letters.
+    A picture with text in its line is a sign: it is as high as the letters.
     """
-    for image in children:
+    for image, line in _with_lines(children):
         if image.type != "image":
             continue
         source = str(image.attrGet("src") or "")
@@ -153,11 +153,19 @@ def _pictures(children: Sequence[Token], home: Path) -> Iterator[str]:
             yield f"picture {source!r}: a number stands in the text, not in what the picture shows"
         try:
             image.attrSet("src", own_picture(source, home))
-            if len(children) > 1:
+            if any(each.type == "text" and each.content.strip() for each in line):
                 image.attrSet("class", "sign")
         except ValueError as error:
             image.type = "text"
             yield str(error)
+
+
+def _with_lines(children: Sequence[Token]) -> Iterator[tuple[Token, Sequence[Token]]]:
+    """Each token, and the tokens of its line."""
+    ends = [i for i, each in enumerate(children) if each.type in ("softbreak", "hardbreak")]
+    for begin, end in zip([0, *ends], [*ends, len(children)], strict=True):
+        line = children[begin:end]
+        yield from ((each, line) for each in line)
 
 
 def own_picture(source: str, home: Path) -> str:

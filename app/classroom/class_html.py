@@ -237,11 +237,11 @@ def dots_view(states: Sequence[State], words: Words) -> str:
     """A dot for each student who is here, and how many are in each state."""
     order = list(DOTS)
     shown = [(state, DOTS[state][0].hex) for state in sorted(states, key=order.index, reverse=True)]
-    counts, more = list[tuple[str, str]](), 0
-    for state, (colour, _, many, _) in reversed(DOTS.items()):
+    counts, more = list[tuple[str, str]](), {"here": len(states) - states.count("here")}
+    more["answered"] = states.count("right")
+    for state, (colour, _, many, _) in DOTS.items():
         if count := states.count(state):
-            counts.insert(0, (colour.hex, words(many, count=count, more=more)))
-            more += count
+            counts.append((colour.hex, words(many, count=count, more=more.get(state, 0))))
     return render("class/dots.html", dots=shown, counts=counts)
 
 

@@ -118,7 +118,7 @@ def from_stored(data: Stored | None, progress: Callable[[str], Progress], now: f
     try:
         kept = msgspec.convert(data, StoredClass)
     except msgspec.ValidationError as error:
-        log_warning("a class cannot be read and begins anew: %s", error)
+        log_warning("a class cannot be read and starts again: %s", error)
         return ClassState()
     members: dict[str, Member] = {}
     for each in kept.members[:MOST_MEMBERS]:
@@ -126,7 +126,7 @@ def from_stored(data: Stored | None, progress: Callable[[str], Progress], now: f
             lab, member = read
             members[lab] = replace(member, progress=progress(lab), active=now)
     joined = max([kept.joined, *(member.number for member in members.values())])
-    step = read_push(kept.step)
+    step = read_push(kept.step or kept.push)  # an older row has the push alone
     orders = Orders(
         frozen=kept.frozen,
         pushes=kept.pushes,

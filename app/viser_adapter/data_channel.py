@@ -19,7 +19,7 @@ from onpath.app.common.error_log import log_error
 from onpath.app.viser_adapter.secure_connection import SecureConnection
 
 FAMILY = "onpath-"
-SUBPROTOCOL = f"{FAMILY}2"
+SUBPROTOCOL = f"{FAMILY}3"
 GREETING = 90.0  # [s] within which the greeting must come; a page and its network may be slow
 NO_GREETING = 4001  # websocket close code: the first message was no valid greeting
 MOST_UNSENT = 1 << 16  # [B] unsent, beyond which a page gets no further data

@@ -650,7 +650,7 @@ start-title = Start
 start-show = Show it, to drag it
 start-show_hint = A green ball in the scene: where the next run starts; its arrow is the velocity. While it is shown, the links of a robot from a file can be dragged, too: each turns its joint there
 start-reset = Reset to it
-start-reset_hint = Begins anew, from this start
+start-reset_hint = Restarts the run from this start
 start-default = On the path
 start-default_hint = Puts the start back onto the path, at rest
 
@@ -704,9 +704,9 @@ design-rounder = Round the corners to { $radius } mm
 design-followed = The robots follow { $file }; Undo takes it back. What you change below acts on it at once.
 design-reading = The file is being read.
 design-undo = Undo
-design-undo_hint = Takes back the last change of the path
+design-undo_hint = Undoes the last change to the path
 design-redo = Redo
-design-redo_hint = Makes the change again that was taken back
+design-redo_hint = Makes the undone change again
 design-add = Add
 design-add_hint = A new point of the path, after the selected one
 design-remove = Remove
@@ -724,7 +724,7 @@ design-zone_hint = Where the arm is stretched or folded, eq. (14)
 ## Gains and realism; the names of the parameters themselves stand in models/
 
 gains-defaults = Reset to defaults
-gains-defaults_hint = Gives the robot and its laws their usual values
+gains-defaults_hint = Sets the robot and its laws back to their usual values
 gains-across = Across
 gains-along = Along
 gains-pulse = Test pulse

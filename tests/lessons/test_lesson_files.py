@@ -217,6 +217,27 @@ def test_what_is_no_picture_is_not_read(tmp_path: Path, kind: str) -> None:
     assert any("no picture 'no.svg'" in words for _, words in problems(file))
 
 
+@pytest.mark.parametrize(
+    ("text", "signs"),
+    [
+        ("A dot ![x](x.svg) waits.", 1),
+        ("![x](x.svg)", 0),
+        ("![x](x.svg)\n![x](x.svg)", 0),
+        ("![x](x.svg)\nA dot, ![x](x.svg), waits\n![x](x.svg)", 1),
+    ],
+)
+def test_a_picture_beside_text_is_a_sign(tmp_path: Path, text: str, signs: int) -> None:
+    file = write_lesson(tmp_path, LESSON.replace("*waits*", f"\n\n{text}\n\n"))
+    file.with_name("x.svg").write_text('<svg xmlns="http://www.w3.org/2000/svg"/>')
+    words = "".join(
+        block.html
+        for step in read_lesson(file).steps
+        for block in step.blocks
+        if isinstance(block, Text)
+    )
+    assert words.count("<img") == text.count("![x]") and words.count('class="sign"') == signs
+
+
 def _link_to_itself(path: Path) -> None:
     path.symlink_to(path)
 

@@ -6,7 +6,7 @@ import type { Curves, RowData, Verdict } from "../core/shared_data"
 import type { ChartData, StepData } from "../core/lesson_data"
 import type { Notes } from "../lessons/notes"
 
-export const PROTOCOL = "onpath-2"
+export const PROTOCOL = "onpath-3"
 
 /** Control laws of the sides; an empty one is that of a new lab, or stays as it is. */
 export interface Laws {

@@ -314,6 +314,14 @@ def test_what_is_broken_is_left_out_and_the_class_goes_on(field: str, broken: An
     assert read.orders.push is None and read.orders.step is None
 
 
+def test_a_class_of_before_goes_on_from_the_step_that_was_sent() -> None:
+    room = Classroom(key=KEY)
+    room.push(TakeStep("01-path-or-timetable", 2, "1-lab"))
+    stored = to_stored(room.state, room.clock())
+    del stored["step"]
+    assert from_stored(stored, lambda _: NOTHING_DONE, 0.0).orders == room.orders
+
+
 @pytest.mark.parametrize("broken", [{}, {"members": 1}, {"passes": [1]}])
 def test_a_class_that_cannot_be_read_is_begun_anew(broken: dict[str, Any]) -> None:
     assert from_stored(broken, lambda _: NOTHING_DONE, 0.0) == ClassState()

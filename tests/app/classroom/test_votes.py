@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from onpath.app.channel.class_messages import Lead
 from onpath.app.channel.messages import encoded
+from onpath.app.classroom.class_html import DOTS, dots_view
 from onpath.app.classroom.class_state import from_stored, to_stored
 from onpath.app.classroom.class_sync import ClassSync
 from onpath.app.classroom.classroom import NOTHING_DONE, Classroom
@@ -379,6 +380,13 @@ def test_who_is_set_aside_is_neither_counted_nor_lost_and_is_back_on_coming(
     here.add("Cem")
     sync.check()
     assert list(lecture.room.present()) == ["Ada", "Cem"]
+
+
+@given(st.lists(st.sampled_from(list(DOTS)), min_size=1))
+def test_an_answer_is_called_other_only_beside_right_ones(states: list[Any]) -> None:
+    told = dots_view(states, ENGLISH)
+    assert ("otherwise" in told) == ({"answered", "right"} <= {*states})
+    assert ("not yet" in told) == ("here" in states and {*states} != {"here"})
 
 
 @given(st.lists(st.sampled_from([None, 0, 1]), min_size=1, max_size=20))
