@@ -219,18 +219,18 @@ def pendulum(of: Symbols) -> list[ca.SX]:
     pen = of["d"] * faster - of["a"] * ca.sin(of["psi"] - heading)
     found = -ca.substitute(pen, faster, 0) / ca.jacobian(pen, faster)
     stiffness = ca.substitute(-ca.jacobian(found, heading), heading, of["psi"])
-    centre = ca.substitute(stiffness, ca.vertcat(of["a"], of["d"]), ca.DM([0.2, 0.06]))
+    centre = ca.substitute(ca.substitute(stiffness, of["a"], 0.2), of["d"], 0.06)
     return [ca.substitute(found, heading, of["phi"]), ca.sqrt(centre)]
 
 
 def drag(of: Symbols) -> list[ca.SX]:
     """Velocity and acceleration of a point on a circle, and what of them is along n."""
     time, place = ca.SX.sym("t"), ca.SX.sym("k")
-    rate, heading = of["Omega"], of["Omega"] * time + ca.pi / 2 + of["beta"]
+    rate, heading = of["Omega"], of["Omega"] * time + np.pi / 2 + of["beta"]
     pen = of["R"] * turned(rate * time)
     moved = ca.jacobian(pen, time)
     pull = ca.jacobian(moved, time) + place * moved
-    left = ca.substitute(ca.dot(pull, turned(heading + ca.pi / 2)), time, 0.3)
+    left = ca.substitute(ca.dot(pull, turned(heading + np.pi / 2)), time, 0.3)
     ahead = ca.substitute(left, of["beta"], 0) - place * of["d"] * rate
     still = -ca.substitute(ahead, place, 0) / ca.jacobian(ahead, place)
     return [ca.substitute(left, place, of["k"]), still]

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 from typing import Any
+from uuid import uuid4
 
 import casadi as ca
 import numpy as np
@@ -285,8 +286,10 @@ def test_laws_of_a_file_that_runs_them_itself_keep_their_names(tmp_path: Path) -
     readme = (ROOT / "README.md").read_text("utf-8")
     codes = re.findall(r"```python\n(.*?)```", readme, re.S)
     [code] = [each for each in codes if "class SlidingMode" in each]
-    file.write_text(code.replace("SlidingMode", "Sliding").replace("plain", "in_intervals"))
-    for name in ("Sliding", "in_intervals", "Sliding"):
+    alone = uuid4().hex  # a name is another law's as long as the process lasts
+    law, simple = f"Law_{alone}", f"simple_{alone}"
+    file.write_text(code.replace("SlidingMode", law).replace("plain", simple))
+    for name in (law, simple, law):
         assert law_given(f"{file}:{name}") == name
         assert law_named(name).source == file.name
 
