@@ -60,9 +60,9 @@ class Captions:
         return self._words(f"caption.{kind}", mm=self._millimetres(distance)) if kind else ""
 
     def _millimetres(self, distance: float) -> str:
-        """A distance [m] in whole millimetres, or tenths where it has not one."""
+        """A distance [m] in whole millimetres, or tenths where it has tenths only."""
         mm = 1e3 * distance
-        return self._words.written(f"{mm:.{1 if mm < 1 else 0}f}")
+        return self._words.written(f"{mm:.{1 if 0.05 <= mm < 1 else 0}f}")
 
     def _largest_held(self, side: str, robot: RobotSnapshot) -> float:
         """Largest distance since a robot has been held back, [m].

@@ -125,7 +125,7 @@ export class Connection {
         if (!box.isConnected) document.body?.append(box)
     }
 
-    /** Open both websockets anew: they may have ended without our knowing. */
+    /** Open both websockets again: they may have ended without our knowing. */
     private renew(): void {
         this.quiet = 0
         this.slept = false

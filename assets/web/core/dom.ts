@@ -36,7 +36,7 @@ export function switchInput(properties: { id?: string; title?: string; checked?:
 }
 
 /** Set an element's text if it differs, so that a screen reader does not repeat it. Its node stays: for another node a browser
- * matches all rules with :has() anew, which on the lab's page took a quarter of the time of each picture. */
+ * matches all rules with :has() again, which on the lab's page took a quarter of the time of each picture. */
 export function tell(element: HTMLElement, text: string): void {
     if (element.textContent === text) return
     if (text && element.childNodes.length === 1 && !element.firstElementChild) element.firstChild!.nodeValue = text

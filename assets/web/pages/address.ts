@@ -7,14 +7,19 @@ import type { Figure } from "./figure"
 const RESTS = 500 // [ms] without a change until the address is another one; browsers refuse to have it changed all the time
 
 /** Begin with the settings of the page's address, and keep them there from then on. */
-export function keepInAddress({ settings, engine, simulation: { data } }: Figure): void {
+export function keepInAddress({ settings, engine, own, simulation: { data } }: Figure): void {
     const fields = data.form.groups.flatMap(group => group.fields).filter(each => ["number", "choice", "switch"].includes(each.kind))
     const begun = new Map(fields.map(({ name }) => [name, settings.value(name)]))
-    const given = new URLSearchParams(location.hash.slice(1))
-    for (const field of fields) {
-        const value = valueOf(field, given.get(field.name))
-        if (value !== null) settings.set(field.name, value)
+    const read = () => {
+        const given = new URLSearchParams(location.hash.slice(1))
+        for (const field of fields) {
+            const { name } = field, value = valueOf(field, given.get(name)) ?? begun.get(name)
+            if (value !== undefined && !same(value, settings.value(name))) settings.set(name, value)
+        }
     }
+    read()
+    if (own) own.plays = true // nobody has done anything yet
+    addEventListener("hashchange", read)
     let resting: ReturnType<typeof setTimeout> | undefined
     const keep = () => {
         const changed = fields.map(({ name }) => [name, settings.value(name)] as const).filter(([name, value]) => !same(value, begun.get(name)))

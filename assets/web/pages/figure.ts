@@ -36,7 +36,8 @@ export class Figure {
     private readonly bar = made("div", "bar", this.transport.element, this.late)
     /** The settings that one may change; a page may put it elsewhere. */
     readonly form = new Form(this.data.form, this.settings, this.ended)
-    private readonly own: OwnHold | null
+    /** What it does by itself, unless it is in a lesson. */
+    readonly own: OwnHold | null
     private pending: (() => void) | null = null // a drag to be handled before the next picture
     private stale = true
     private kind = ""

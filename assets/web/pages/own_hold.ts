@@ -11,9 +11,17 @@ export class OwnHold {
     plays = true
     private next = FIRST // [s], when it holds or, at the latest, lets go
     private acts = false
+    private holds = false // whether the last hold is its own
 
     constructor(private readonly engine: LocalEngine, ended: AbortSignal) {
-        engine.on(change => { if (change !== "samples" && !this.acts) this.plays = false }, ended)
+        engine.on(change => change !== "samples" && !this.acts && this.end(), ended)
+    }
+
+    /** Somebody else has done something: robots that nobody else holds are let go. */
+    private end(): void {
+        const { holds, engine: { simulation } } = this
+        this.plays = this.holds = false
+        if (holds) simulation.hold(false)
     }
 
     /** Hold the robots, or let them go, if it is time. */
@@ -26,7 +34,7 @@ export class OwnHold {
         if (time < next && !returns) return
         this.next = time + (held ? REST : LONGEST)
         this.acts = true
-        simulation.hold(!held)
+        simulation.hold(this.holds = !held)
         this.acts = false
     }
 }

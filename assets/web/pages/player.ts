@@ -33,6 +33,7 @@ export class Player implements Robots {
     private readonly views: StepView[]
     private readonly legend: Legend
     private tasks: Task[] = []
+    refused = false
     playing = false
     private turn = 0 // so that a figure that arrives late is not shown
 
@@ -94,7 +95,7 @@ export class Player implements Robots {
         this.stage?.close()
         this.stage = student.recorded = null
         this.tasks = []
-        this.playing = false
+        this.playing = this.refused = false
         student.goes(this.index)
         const { section } = this
         this.sections.forEach((each, i) => {
@@ -126,7 +127,8 @@ export class Player implements Robots {
         } catch (error) {
             if (turn !== this.turn) return
             into.replaceChildren(refused(figure, error))
-            return this.run()
+            this.refused = true
+            return this.show()
         }
         if (turn !== this.turn) return stage.close()
         this.put(stage, step)
@@ -267,7 +269,6 @@ export class Player implements Robots {
         next.disabled = index === length
         next.textContent = phrase(page, waits ? "site.skip_short" : index === length - 1 ? "lesson.finish" : "lesson.next")
         next.ariaLabel = waits ? phrase(page, "lesson.skip") : null
-        next.classList.toggle("main", !waits)
         StepView.lead(view ?? null, pager)
         if (!this.playing) this.run()
         view?.formulas()

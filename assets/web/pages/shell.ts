@@ -48,7 +48,7 @@ export class Shell {
     private brought = "" // share code of the page's address
     private compare: LawComparison | null = null
     private seat: ClassSheet | null = null
-    private membership = "" // the lab\'s in the class, as it was told last
+    private membership = "" // of the lab in the class, as it was told last
     private asked = false // whether the teacher has been asked for a former place
     private readonly chosen = noFile()
     private readonly chosenLog = noLog()

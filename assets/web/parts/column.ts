@@ -62,6 +62,7 @@ export class Column implements Robots {
     readonly element = made("main", "lesson")
     /** Below the robots: where one draws, and sees what happened. */
     readonly beneath = made("div", "beneath")
+    readonly refused = false
     playing = false
     private readonly head = made("div", "head")
     private readonly pager = made("nav", "pager")

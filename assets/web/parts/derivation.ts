@@ -12,7 +12,7 @@ import { readFormula, Refused } from "../lessons/typed"
 /** Make a derivation answerable. Returns what shows what has become of it. */
 export function derive(page: PageData, element: HTMLElement, data: DerivationData, key: string, student: Student): () => void {
     const [step, place] = key.split(".").map(Number)
-    const states = (): LineState[] => { // a lab tells them anew after each answer
+    const states = (): LineState[] => { // a lab tells them again after each answer
         const block = page.steps[step!]!.blocks[place!]!
         return statesOf(block.kind === "derivation" ? block : data, String(lastSaid(student.notes, key) ?? ""))
     }

@@ -103,7 +103,7 @@ export class Drawing {
         return at.map(rounded) as [number, number]
     }
 
-    /** Go on drawing; going back draws that part anew. */
+    /** Go on drawing; going back draws that part again. */
     private extend(time: number, value: number): void {
         const { ghost, from, until } = this.chart
         const least = (until - from) / MOST

@@ -230,7 +230,7 @@ class NumberRow extends FieldRow {
         queueMicrotask(() => this.resume()) // once it is on the page
     }
 
-    /** Go on typing what was half typed when the page was loaded anew. */
+    /** Go on typing what was half typed when the page was reloaded. */
     private resume(): void {
         const { box } = this, { text } = draftOf<{ text: string }>(this.draft) ?? {}
         if (typeof text !== "string" || document.activeElement !== document.body) return

@@ -16,6 +16,8 @@ const SMALLEST = 0.75 // smallest scale of a formula that is too wide
 export interface Robots {
     /** Whether there are any on which the step's script can be played. */
     readonly ready: boolean
+    /** Whether there will be none. */
+    readonly refused: boolean
     readonly playing: boolean
     play(): void
     /** Say something to those who do not see the page. */
@@ -114,23 +116,28 @@ export class StepView {
     get waits(): boolean { return this.prediction !== null && predicted(this.notes, this.prediction.step) === undefined }
     /** Whether its own prediction was committed. */
     get committed(): boolean { return given(predicted(this.notes, this.index)) }
-    /** Whether its run is the next thing to see: it has not been seen, and nobody has chosen to read on without it. */
-    private get isDue(): boolean { return this.page.steps[this.index]!.kind === "run" && !this.happened && !this.reads }
+    /** Whether the text is read without the run: by choice, or because there are no robots. */
+    private get without(): boolean { return this.reads || this.robots.refused }
+    /** Whether its run is the next thing to see: it has not been seen, and is not read without. */
+    private get isDue(): boolean { return this.page.steps[this.index]!.kind === "run" && !this.happened && !this.without }
     /** Whether the main thing to press now is the step's own: to commit its prediction, or to let it happen. */
     get leads(): boolean { return (this.form !== null && !this.committed) || this.isDue }
     /** Put the main button of the step, if it has one now, where one turns the page, and take away another step's; until its
-     * run is seen or skipped, one does not go on. */
+     * run is seen or skipped, Next is not there. */
     static lead(view: StepView | null, ways: HTMLElement): void {
-        const plays = view !== null && view.isDue && !view.waits
-        const wanted = plays ? [view.skip, view.button] : view?.form && !view.committed ? [view.form.commit] : []
+        const commit = view?.committed ? undefined : view?.form?.commit
+        const plays = view !== null && view.isDue && !view.waits && !commit
+        const wanted = plays ? [view.skip, view.button] : commit ? [commit] : []
         for (const each of ways.querySelectorAll<HTMLButtonElement>(".lead, .without")) if (!wanted.includes(each)) each.remove()
         for (const each of wanted) if (each && each.parentElement !== ways) ways.append(each)
         for (const name of ["lead", "main"]) view?.button?.classList.toggle(name, plays)
-        if (view?.button && !plays) view.places.section.querySelector(".play")!.prepend(view.button)
+        const play = view?.places.section.querySelector(".play")
+        if (view?.button && !plays && view.button.parentElement !== play) play!.prepend(view.button) // moved, it would lose the focus
         const next = ways.querySelector<HTMLButtonElement>("span ~ button:not(.lead, .without)")
         if (!next) return
         if (plays && next === document.activeElement) view.button?.focus()
         next.hidden = plays
+        next.classList.toggle("main", !wanted.length && !view?.waits)
     }
 
     /** Whether the step's run has been seen; a run that only the lab can play is seen in its picture. */
@@ -194,14 +201,14 @@ export class StepView {
         const { waits, happened, button } = this
         if (button) {
             button.disabled = waits || !robots.ready
-            button.hidden = robots.playing
+            button.hidden = robots.playing || robots.refused
             button.textContent = phrase(page, notes.played[String(index)] ? "lesson.replay" : "lesson.play")
         }
         section.querySelector(".before")?.remove()
         if (waits) (told ?? section.querySelector("h2"))!.after(made("p", "before op-text", phrase(page, "lesson.predict_before")))
         told?.querySelectorAll("span").forEach(each => each.remove())
         if (robots.playing && !section.querySelector(".op-watch")) told?.append(made("span", "", phrase(page, "lesson.playing")))
-        const open = !waits && (happened || this.reads)
+        const open = !waits && (happened || this.without)
         section.classList.toggle("veiled", !open)
         if (step.script) section.querySelector(".still")?.classList.toggle("always", open && !robots.ready)
         this.compare()

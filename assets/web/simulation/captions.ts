@@ -20,7 +20,7 @@ function kind(side: Side, off: boolean, data: FigureData): string {
 export function caption(side: Side, data: FigureData): string {
     const distance = side.held ? side.most : side.distance
     const which = kind(side, distance >= data.off, data), mm = 1e3 * distance
-    return which && phrase(data, `caption.${which}`, { mm: written(data, mm, mm < 1 ? 1 : 0) })
+    return which && phrase(data, `caption.${which}`, { mm: written(data, mm, mm >= 0.05 && mm < 1 ? 1 : 0) })
 }
 
 /** One line with the captions of all robots that have one. */

@@ -60,7 +60,7 @@ export class Side {
 
     get pulled(): boolean { return this.pulledBy !== null }
     readonly does = (): LawData => this.figure.laws[this.law]!
-    /** Begin anew on a path, at rest, with the path's settings. */
+    /** Start again on a path, at rest, with the path's settings. */
     begin(path: Path): void {
         const { kernels, state } = this
         this.path = path

@@ -125,7 +125,7 @@ export class Simulation {
 
     private readonly meant = (only?: number): Side[] => (only === undefined ? this.sides : [this.sides[only]!])
 
-    /** Begin anew, with the parameters as they are. */
+    /** Restart the run, with the parameters as they are. */
     reset(): void {
         this.ticks = 0
         this.held = false
@@ -136,7 +136,7 @@ export class Simulation {
         this.changed("history")
     }
 
-    /** Begin anew on another path. */
+    /** Restart on another path. */
     choose(path: number): void {
         this.select(null)
         this.path = path

@@ -63,9 +63,35 @@ def test_it_holds_the_robots_until_somebody_else_does_something(page: NodePage, 
     for before, after in pairwise(holds):
         assert after["from"] - before["until"] > 5
     page.evaluate("onpath.settings.set('K1', 900)")
-    was_held = page.evaluate("onpath.simulation.held")
     assert page.evaluate(PLAYED, 20.0) == []
-    assert page.evaluate("onpath.simulation.held") == was_held
+
+
+@pytest.mark.parametrize(
+    "act",
+    [
+        "settings.set('K1', 900)",
+        "engine.act({do: 'rate', rate: 0.5})",
+        "engine.act({do: 'run', on: false})",
+        "engine.act({do: 'hold', on: false})",
+        "engine.act({do: 'reset'})",
+        "simulation.pull([0, 0])",
+    ],
+)
+def test_whoever_does_something_finds_the_robots_free(page: NodePage, file: Path, act: str) -> None:
+    opened(page, file)
+    while not page.evaluate("onpath.simulation.held"):
+        page.evaluate("onpath.advance(16), onpath.own.follow()")
+    page.evaluate(f"onpath.{act}, null")
+    sides = "onpath.simulation.sides.some(side => side.held)"
+    assert not page.evaluate(f"onpath.own.plays || onpath.simulation.held || {sides}")
+    assert page.evaluate(PLAYED, 10.0) == []
+
+
+def test_a_hold_by_the_reader_stays(page: NodePage, file: Path) -> None:
+    opened(page, file).evaluate("onpath.engine.act({do: 'hold', on: true})")
+    assert page.evaluate(PLAYED, 10.0) == []
+    page.evaluate("onpath.settings.set('K1', 900)")
+    assert page.evaluate("onpath.simulation.held")
 
 
 def test_it_begins_with_the_settings_of_its_address(page: NodePage, file: Path) -> None:
@@ -73,8 +99,15 @@ def test_it_begins_with_the_settings_of_its_address(page: NodePage, file: Path) 
     values = {n: page.evaluate("n => onpath.settings.value(n)", n) for n in ("K1", "path", "left")}
     assert values == {"K1": 900, "path": 1, "left": 2}
     assert page.evaluate("Math.abs(onpath.settings.value('speed')) < 30")  # not as it asks
+    assert page.evaluate(PLAYED, 10.0)  # whoever opens it has not done anything yet
     page.evaluate("onpath.settings.set('K1', 500)")
     kept = "location.hash.includes('K1=500') && !location.hash.includes('nothing')"
     wait_for(lambda: page.evaluate(kept), 10.0)
+    # Here alone, a kept hash is an event, too.
+    page.evaluate("new Promise(done => setTimeout(done))")
     page.evaluate("onpath.settings.set('K1', 400)")  # as its author has it
     wait_for(lambda: page.evaluate("!location.hash.includes('K1')"), 10.0)
+    page.evaluate("(location.hash = '#K1=700&path=1', null)")  # typed into the open tab
+    value = "n => onpath.settings.value(n)"
+    wait_for(lambda: page.evaluate(value, "K1") == 700, 10.0)
+    assert [page.evaluate(value, n) for n in ("path", "left")] == [1, 0]

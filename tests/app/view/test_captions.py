@@ -53,6 +53,15 @@ def test_captions_follow_the_law_not_the_side() -> None:
     assert all(caption.startswith("waits: ") for caption in held.values()), held
 
 
+def test_a_distance_that_is_none_is_written_without_decimals() -> None:
+    lab, captions = new_lab(), Captions(ENGLISH)
+    do(lab, c.Set("speed", 0.0))
+    run(lab, 0.5)
+    do(lab, c.Hold(True))
+    held = seen(lab, captions, 0.2)
+    assert [caption.partition(" mm")[0].split()[-1] for caption in held.values()] == ["0", "0"]
+
+
 def test_a_second_hold_is_measured_anew() -> None:
     lab, captions = new_lab(1.0), Captions(ENGLISH)
     do(lab, c.Hold(True))

@@ -7,7 +7,16 @@ import { noNotes } from "../../../../assets/web/lessons/notes"
 import { Column } from "../../../../assets/web/parts/column"
 import { chance } from "../random"
 
-const PAGER = `<div class="ways"><button type="button" data-send='[{"do":"GoToStep","by":1},{"do":"PlayStep"}]'>Next</button></div>`
+/** The pager as the server makes it (assets/templates/lesson/pager.html). */
+const pagerTo = (forward: string) => `<div class="ways">
+    <button type="button" aria-label="Back" title="Back" data-send='[{"do":"GoToStep","by":-1}]'>←</button>
+    <span class="gap"></span>
+    ${forward}
+</div>`
+const PAGER = pagerTo(`<button type="button" class="main" data-send='[{"do":"GoToStep","by":1}]'>Next</button>`)
+const SKIPPER = pagerTo(`<button type="button" aria-label="Skip" title="Skip" data-send='[{"do":"GoToStep","by":1}]'>Skip</button>`)
+const PREDICTION = `<p>What will happen?</p><ul class="options"><li><input type="radio" name="o" value="0"></li></ul>
+    <div class="committing"><button type="button" class="lead main">Commit</button></div><p class="verdict"></p>`
 const part = (number: number, inside: string) => `<div data-block="${number}">${inside}</div>`
 const FIELD = part(2, "<p>What do you see?</p><textarea></textarea><button type=button>Keep</button>")
 
@@ -94,8 +103,8 @@ test("settings without a task stand before the first question, or at the end", (
 test("a button sends what stands in it, and keys turn pages unless they are typed", () => {
     const { sent, hear } = opened()
     hear()
-    document.querySelector<HTMLElement>(".pager [data-send]")!.click()
-    assert.deepEqual(sent, [{ do: "GoToStep", by: 1 }, { do: "PlayStep" }])
+    for (const button of document.querySelectorAll<HTMLElement>(".pager [data-send]")) button.click()
+    assert.deepEqual(sent, [{ do: "GoToStep", by: -1 }, { do: "GoToStep", by: 1 }])
     sent.length = 0
     for (const target of [words().querySelector("textarea")!, document.body])
         target.dispatchEvent(new KeyboardEvent("keydown", { key: "PageDown", bubbles: true, cancelable: true }))
@@ -122,7 +131,6 @@ test("a step leads while its prediction or its run is to come, and then no longe
 
 test("one button at a time is the main one: to let it happen until the run is seen or skipped, and then to go on", () => {
     const draw = chance(7)
-    const pager = `<div class="ways"><button>Back</button><span class="gap"></span><button class="main">Next</button></div>`
     const step = { kind: "run", optional: false, running: true, script: { do: [], seconds: 1 }, figure: -1, values: { lengths: [], paths: [] }, blocks: [] }
     for (let k = 0; k < 30; k++) {
         const { hear } = opened()
@@ -133,7 +141,7 @@ test("one button at a time is the main one: to let it happen until the run is se
         for (let change = 0; change < 8; change++) {
             const playing = Boolean(script) && draw() < 0.3
             played ||= Boolean(script) && draw() < 0.15
-            hear({ sections: { "0": `<h2 id="title-1">One</h2>${script}` }, pager, steps, playing, notes: { ...noNotes(), played: { 0: played } } as unknown as LessonMessage["notes"] & object })
+            hear({ sections: { "0": `<h2 id="title-1">One</h2>${script}` }, steps, playing, notes: { ...noNotes(), played: { 0: played } } as unknown as LessonMessage["notes"] & object })
             const seen = [...document.querySelectorAll<HTMLElement>(".step.open button")].filter(each => !each.hidden)
             const due = Boolean(script) && !played && !skipped
             const main = seen.filter(each => each.classList.contains("main"))
@@ -149,4 +157,29 @@ test("one button at a time is the main one: to let it happen until the run is se
             assert.ok(document.activeElement === words() && !skip.isConnected)
         }
     }
+})
+
+test("of a prediction that is open, skipped or made, one button at a time is the main one", () => {
+    const shared = { optional: false, running: true, figure: -1, values: { lengths: [], paths: [] } }
+    const script = { do: [], seconds: 1 }, blocks = [{ kind: "choice", options: 1 }], text = `<h2 id="title-1">One</h2>`
+    const play = `<p class="play"><button>Play</button></p>`
+    const asks = { ...shared, kind: "predict", script: null, blocks }, runs = { ...shared, kind: "run", script, blocks: [] }
+    const cases = { // the steps, which is open, and its HTML
+        asked: { steps: [asks, runs], index: 0, html: text + part(0, PREDICTION) },
+        "before the run": { steps: [asks, runs], index: 1, html: text + play },
+        "within the run": { steps: [{ ...runs, blocks }], index: 0, html: text + part(0, PREDICTION) + play },
+    }
+    for (const [name, { steps, index, html }] of Object.entries(cases))
+        for (const order of [["open", "skipped", "made"], ["open", "made"], ["skipped", "made"]]) {
+            const { hear } = opened()
+            for (const state of order) {
+                const given = state === "open" ? [] : [{ item: "0", answer: state === "made" ? { option: 0 } : {} }]
+                hear({ steps, index, sections: { [index]: html }, pager: state === "open" ? SKIPPER : PAGER, notes: { ...noNotes(), given } } as unknown as Partial<LessonMessage>)
+                const main = [...document.querySelectorAll<HTMLElement>(".step.open button.main")].filter(each => !each.closest("[hidden]"))
+                const asksHere = name !== "before the run" && state !== "made"
+                const due = asksHere ? ["Commit"] : state === "open" ? [] : name === "asked" ? ["Next"] : ["lesson.play"]
+                assert.deepEqual(main.map(each => each.textContent), due, `${name}, ${state}`)
+                assert.ok(main.every(each => each.parentElement!.matches(".ways")))
+            }
+        }
 })

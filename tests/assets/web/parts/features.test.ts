@@ -22,7 +22,7 @@ test("features are told after the run, of the robot that was predicted", () => {
     const steps = [{ kind: "predict", script: null, blocks: [SKETCH] }, { kind: "run", script, blocks: [] }]
     const page = { words: TEXTS.words, lesson: "a", figures: [], steps } as unknown as PageData
     const notes = noNotes()
-    const robots = { ready: true, playing: false, play: () => {}, tell: () => {}, act: () => {} }
+    const robots = { ready: true, refused: false, playing: false, play: () => {}, tell: () => {}, act: () => {} }
     const section = document.querySelector<HTMLElement>("#step-2")!
     const student = { notes, name: "", way: () => "" } as unknown as Student
     const view = new StepView(page, 1, student, robots, { section, beneath: document.querySelector("#beneath")!, isWide: () => true })
