@@ -28,7 +28,8 @@ export function chooseLesson(texts: Texts, { lessons, routes, open }: LessonShee
 function cardOf(texts: Texts, lesson: LessonCard, isNext: boolean, act: () => void): HTMLElement {
     const name = lesson.number ? `${lesson.number}. ${lesson.title}` : lesson.title
     const state = lesson.finished ? "lesson.done" : lesson.begun ? "lesson.begun" : ""
-    const facts = [...(state ? [phrase(texts, state)] : []), ...lesson.facts].flatMap(each => [" · ", made("span", "", each)]).slice(1)
+    const done = lesson.begun && !lesson.finished ? [`${Math.round(100 * lesson.done)} %`] : [] // the bar says it only to the eye
+    const facts = [...(state ? [phrase(texts, state)] : []), ...done, ...lesson.facts].flatMap(each => [" · ", made("span", "", each)]).slice(1)
     const card = pressed(`card${isNext ? " next" : ""}`, "", act)
     card.append(made("b", "", name), made("span", "summary", lesson.summary), made("span", "facts", lesson.finished ? icon("done") : "", ...facts))
     if (lesson.picture) card.prepend(Object.assign(made("img", "about"), { src: lesson.picture, alt: "" })) // its title stands beside it

@@ -20,6 +20,7 @@ test("one card says where to go on: the open lesson, or else the first that is n
         const left = lessons.filter(each => ["1", "2", "3"].includes(each.number) && !each.finished)
         assert.deepEqual(told, open && !open.finished ? [open] : left.slice(0, 1))
         assert.deepEqual(cards.map(card => card.querySelector("progress")?.value), lessons.map(each => (each.begun && !each.finished ? each.done : undefined)))
+        assert.deepEqual(cards.map(card => card.textContent.includes("40 %")), lessons.map(each => each.begun && !each.finished))
         assert.deepEqual(cards.map(card => Boolean(card.querySelector("img"))), lessons.map(each => Boolean(each.number)))
         sheet.close()
     }
