@@ -99,11 +99,12 @@ class Solver:
         self.page.evaluate(BLUR)
 
     def by_link(self, wanted: dict[str, Value]) -> dict[str, Value]:
-        """Press a link of the text that gives some settings their values; return the others."""
+        """Press a link in sight that gives some settings their values; return the others."""
         for place, link in enumerate(self.page.evaluate(LINKS)):
             given = {name: v for act in link or () for name, v in act.get("set", {}).items()}
-            if given and given.items() <= wanted.items():
-                self.page.locator(".step.open button[data-link]").nth(place).click()
+            link = self.page.locator(".step.open button[data-link]").nth(place)
+            if given and given.items() <= wanted.items() and link.is_visible():
+                link.click()
                 return {name: v for name, v in wanted.items() if name not in given}
         return wanted
 
