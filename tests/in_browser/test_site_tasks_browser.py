@@ -44,6 +44,7 @@ ANEW = """step => {
 }"""
 FIELD = """name => site.stage.figure.data.form.groups.flatMap(group => group.fields)
     .find(field => field.name === name)"""
+REMADE = "name => name in site.page.steps[site.index].remade"  # whether it makes another robot
 LINKS = """() => site.page.steps[site.index].blocks
     .flatMap(block => block.kind === "text" ? block.links : [])"""
 SAID = "all => all.map(each => each.textContent.slice(2))"
@@ -125,8 +126,10 @@ class Solver:
         form = self.page.locator(".step.open .form")
         if field["kind"] == "choice":
             option = next(each for each in field["options"] if each["value"] == value)
+            before = self.page.evaluate_handle("site.stage")
             form.get_by_label(field["label"]).select_option(label=option["label"])
-            self.reader.ready()  # of another robot
+            if self.page.evaluate(REMADE, name):
+                self.page.wait_for_function("before => site.stage !== before", arg=before)
             return
         unit = f" [{field['unit']}]" if field.get("unit") else ""
         box = form.get_by_role("textbox", name=f"{field['label']}{unit}", exact=True)
