@@ -174,5 +174,5 @@ def test_the_free_lab_is_unchanged(tab: Tab) -> None:
     tab.press("Lessons")
     card = tab.card("1. Path or timetable?")
     expect(card).to_contain_text("begun")
-    expect(card).to_contain_text(re.compile("[12] of 2 tasks"))
+    expect(card).to_contain_text(re.compile(r"\d+ %"))
     tab.page.keyboard.press("Escape")

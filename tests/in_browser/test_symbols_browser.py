@@ -40,10 +40,11 @@ CHANGES = {
     'controls = ["K1", "hold"]': f"controls = {[*SLIDERS]}",
 }
 NOTES = """
-const { clearRect, beginPath, lineTo } = CanvasRenderingContext2D.prototype
+const { clearRect, beginPath, moveTo, lineTo } = CanvasRenderingContext2D.prototype
 Object.assign(CanvasRenderingContext2D.prototype, {
     clearRect(...box) { this.canvas.ways = []; return clearRect.apply(this, box) },
     beginPath() { this.canvas.ways?.push([]); return beginPath.apply(this) },
+    moveTo(x, y) { this.canvas.ways?.at(-1)?.push([x, y]); return moveTo.call(this, x, y) },
     lineTo(x, y) { this.canvas.ways?.at(-1)?.push([x, y]); return lineTo.call(this, x, y) },
 })
 """
