@@ -256,11 +256,14 @@ def test_clock_is_an_integral() -> None:
     asked += said(LESSON, "it asks for # N m, and the joints stick up to")
     asked += said(LESSON, "It asks for # N m and needs more")
     assert_stated(asked, 4 * [float(follower.torque[1000:].max())])
-    slow, enough, fast = said(
+    starts, *rates, fastest = said(
         LESSON,
-        "With K5 = 15 it starts, and goes round at # rad/s on average; with 20 at #,"
-        " with 30 at # rad/s.",
+        "With K5 = # it starts, and goes round at # rad/s on average; with 15 at #,"
+        " with 20 at #, with 30 at #, and in places at # rad/s.",
     )
-    for stated, gain in ((slow, 15.0), (enough, 20.0), (fast, 30.0)):
+    least = float(starts)
+    for stated, gain in zip(rates, (least, 15.0, 20.0, 30.0), strict=True):
         run = play(8.0, [], speed=3.0, K5=gain, **STICKY)["follower"]
         assert_stated([stated], [float(run.rate[3000:].mean())])
+    assert_stated([fastest], [float(run.rate[3000:].max())])
+    assert not slipping(play(8.0, [], speed=3.0, K5=least - 0.2, **STICKY)["follower"]).any()
