@@ -187,7 +187,7 @@ def test_a_page_has_one_connection_the_latest(pages: Pages) -> None:
         wait_for(lambda: not stream.is_open)
 
 
-@pytest.mark.parametrize("version", ["onpath-1", "onpath-3", "onpath-"])
+@pytest.mark.parametrize("version", ["onpath-1", "onpath-2", "onpath-"])
 def test_a_page_of_another_version_is_told_to_reload(pages: Pages, version: str) -> None:
     with pages.tab(None, version) as tab:
         closed = closing(tab)
